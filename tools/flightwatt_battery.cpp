@@ -21,6 +21,7 @@ struct BatteryArguments {
     battery::IdentificationOptions identification;
     cli::FlightArguments flights;
     std::optional<std::string> name;
+    std::optional<std::size_t> circuit;
     std::size_t folds = battery::max_battery_folds;
 };
 
@@ -32,16 +33,19 @@ battery::IdentificationOptions identification_options(const cli::StageCall& call
 }
 
 /// The records that can be used. Each flight without one is named, with the reason.
-std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights) {
+std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights,
+                                                   std::optional<std::size_t> circuit) {
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
     std::vector<InputError> refusals;
     const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
             if (!loaded.exclusion.empty()) {
-                throw InputError({file}, fmt::format("{}: {}", loaded.series.flight, loaded.exclusion));
+                throw InputError({file}, fmt::format("{}: {}", loaded.data.flight, loaded.exclusion));
             }
-            auto found = battery::discharge_records(loaded.series);
+            auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
+                                                        ? of_circuit(loaded.data, circuit.value_or(1))
+                                                        : loaded.data);
             for (const auto& text : found.notes) cli::warn(call, fmt::format("{}: {}", file, text));
             return std::move(found.records);
         } catch (const InputError& error) {
@@ -59,7 +63,7 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
 int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto options = identification_options(call, arguments);
     const auto folds = arguments.folds;
-    const auto records = read_records(call, arguments.flights);
+    const auto records = read_records(call, arguments.flights, arguments.circuit);
     cli::note_folds(call, records.size(), folds);
     cli::ProgressBar identifying("identifications");
     const auto identified = identify_battery(records, options);
@@ -109,6 +113,9 @@ resistance shows the pack's state of health. Flights whose current was computed 
         "empty, or else an estimate from the usual charts of lithium cells");
     options.add("cells", arguments.identification.cells, {.value = "N", .min = 1, .max = 24},
                 "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
+    options.add("circuit", arguments.circuit, {.value = "N", .min = 1, .max = 16},
+                "of a vehicle with circuits of different voltages, as segment lists them; default: the one with the "
+                "most energy");
     cli::add_folds_option(options, arguments.folds);
     options.add("name", arguments.name, {.value = "NAME"}, "the battery's name; default: FILE's");
     cli::add_flight_options(options, arguments.flights);

@@ -175,7 +175,7 @@ Fields<Exported> record_fields(const Exported*) {
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
                       const std::string& format) {
     const auto loaded = cli::load_flight(call, file, arguments.load);
-    const auto track = exchange::flown_track(loaded.series, loaded.phases);
+    const auto track = exchange::flown_track(loaded.data, loaded.phases);
     Exported result;
     result.text = format == "geojson" ? to_geojson(track) : format == "kml" ? to_kml(track) : to_gpx(track);
     if (track.clock == exchange::TrackClock::name)

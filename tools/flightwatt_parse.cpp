@@ -5,7 +5,6 @@
 #include "cli/stage.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "stages.h"
 
@@ -26,13 +25,14 @@ struct ParseOutput {
 Fields<ParseOutput> record_fields(const ParseOutput*) {
     using R = ParseOutput;
     using L = flight::LoadedFlight;
-    using S = flight::FlightSeries;
+    using D = flight::FlightData;
     const auto sources = [](const L& loaded) {
-        return Keyed<std::string>(loaded.sources.begin(), loaded.sources.end());
+        const auto by_name = track_sources(loaded.data);
+        return Keyed<std::string>(by_name.begin(), by_name.end());
     };
-    return {field("flight", at(&R::loaded, &L::series, &S::flight), "name of the flight"),
-            field("aircraft_id", at(&R::loaded, &L::series, &S::aircraft_id), "id of the aircraft"),
-            field("aircraft_name", at(&R::loaded, &L::series, &S::aircraft_name), "name of the aircraft"),
+    return {field("flight", at(&R::loaded, &L::data, &D::flight), "name of the flight"),
+            field("aircraft_id", at(&R::loaded, &L::data, &D::aircraft_id), "id of the aircraft"),
+            field("aircraft_name", at(&R::loaded, &L::data, &D::aircraft_name), "name of the aircraft"),
             field("power_source", &R::power_source, "message of the power"),
             field("samples", &R::samples, "power samples"),
             field("start_s", &R::start_s, "first power sample"),
@@ -54,7 +54,7 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
                                   flight::describe_aircraft(series.aircraft_id, series.aircraft_name)),
                       {"time_s", "power_w", "voltage_v", "current_a", "altitude_m", "throttle_percent"},
                       rows});
-    const auto power = power_track(series);
+    const auto& power = loaded.data.power_w;
     if (call.json) {
         ParseOutput output{&loaded, power.source, power.time_s.size(), {}, {}, {}};
         if (!power.empty()) {
@@ -71,7 +71,7 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
                                     power.time_s.front(), power.time_s.back(), flight::median_interval_s(power.time_s));
     cli::note(call,
               fmt::format("{}: aircraft {} {}, {}", series.flight, series.aircraft_id, series.aircraft_name, samples));
-    for (const auto& [name, source] : loaded.sources) {
+    for (const auto& [name, source] : track_sources(loaded.data)) {
         cli::note(call, fmt::format("  {:<20} from {}", name, source));
     }
     return cli::ok;

@@ -154,7 +154,7 @@ int take_path(const cli::StageCall& call, flight::LoadOptions options, const std
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
     if (!loaded.exclusion.empty()) throw InputError({file}, "is not used: " + loaded.exclusion);
-    const auto path = flown_path(loaded.series, cruise_of(loaded, file));
+    const auto path = flown_path(loaded.data, cruise_of(loaded, file));
     CsvWriter csv({path.is_geographic ? "latitude_deg" : "east_m", path.is_geographic ? "longitude_deg" : "north_m",
                    "altitude_m", "airspeed_m_per_s", "duration_s"},
                   digits);
@@ -166,13 +166,13 @@ int take_path(const cli::StageCall& call, flight::LoadOptions options, const std
                 is_first ? std::nullopt : std::optional(place.duration_s));
         duration_s += place.duration_s;
     }
-    write_csv_result(call, csv.text(), {loaded.series.flight + ": where it flew", {}});
+    write_csv_result(call, csv.text(), {loaded.data.flight + ": where it flew", {}});
     if (call.json) {
-        cli::print_json(call, FlightPathOutput{loaded.series.flight, path.waypoints.size(), duration_s});
+        cli::print_json(call, FlightPathOutput{loaded.data.flight, path.waypoints.size(), duration_s});
     } else {
         cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
                                     "mission that is to fly them in another wind leaves duration_s out",
-                                    loaded.series.flight, path.waypoints.size(), duration_text(duration_s)));
+                                    loaded.data.flight, path.waypoints.size(), duration_text(duration_s)));
     }
     return cli::ok;
 }

@@ -5,7 +5,7 @@
 #include "cli/output/prediction_output.h"
 #include "cli/stage.h"
 #include "flight/flight_series.h"
-#include "flight/selected_track.h"
+#include "flight/select.h"
 #include "mechanical/prediction.h"
 #include "stages.h"
 
@@ -25,7 +25,7 @@ struct PredictArguments {
 /// A flight at a time, and its log up to then.
 struct KnownFlight {
     mechanical::FlightProgress flown;
-    flight::FlightSeries series;
+    flight::FlightData data;
 };
 
 /// The state at the requested time. No later part of the log is used, for any choice, check or message.
@@ -39,7 +39,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
     for (auto& series : candidates) series = truncate_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));
     cli::refuse_unknown_flights(options, {series.flight});
-    if (power_track(series).empty() && !series.clock_restart) {
+    if (select_tracks(series).power_w.empty() && !series.clock_restart) {
         throw NoResultError(fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
     }
     auto loaded = segment_and_check(std::move(series), options);
@@ -48,7 +48,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
         cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file, loaded.exclusion));
     }
     auto flown = mechanical::progress_at(loaded.series, until_s, sortie, options.segmentation);
-    return {std::move(flown), std::move(loaded.series)};
+    return {std::move(flown), std::move(loaded.data)};
 }
 
 Prediction predict_flight(const cli::StageCall& call, const PredictArguments& arguments) {
@@ -56,7 +56,7 @@ Prediction predict_flight(const cli::StageCall& call, const PredictArguments& ar
     const auto known = read_progress(call, arguments.time, arguments.load);
     live::Diagnostics remarks;
     try {
-        auto prediction = live::predict_flight(basis, known.flown, known.series, remarks);
+        auto prediction = live::predict_flight(basis, known.flown, known.data, remarks);
         cli::warn_of(call, remarks);
         return prediction;
     } catch (...) {

@@ -40,7 +40,7 @@ void append_rows(const std::string& rows, const std::string& flight, std::string
 
 void add_flight(const cli::StageCall& call, const std::string& file, const flight::LoadedFlight& loaded,
                 SegmentedFlights& segmented) {
-    const auto& series = loaded.series;
+    const auto& data = loaded.data;
     const auto& phases = loaded.phases;
     const auto& power = loaded.power;
     for (const auto& other : phases.ground_events) {
@@ -50,17 +50,17 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
     for (const auto& fault : power.power_faults) {
         cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
     }
-    segmented.title = cli::describe_flight(series, phases);
+    segmented.title = cli::describe_flight(data, phases);
     if (segmented.are_several)
-        append_rows(flight::phases_csv(series, phases), series.flight, segmented.csv);
+        append_rows(flight::phases_csv(data, phases), data.flight, segmented.csv);
     else
-        segmented.csv = flight::phases_csv(series, phases);
+        segmented.csv = flight::phases_csv(data, phases);
     if (call.json)
-        segmented.json.flights.push_back(record_json(cli::SegmentedFlight{&series, &phases, &power, &loaded.warnings}));
+        segmented.json.flights.push_back(record_json(cli::SegmentedFlight{&data, &phases, &power, &loaded.warnings}));
     if (!segmented.explains) return;
     if (segmented.are_several)
         segmented.explained += (segmented.explained.empty() ? "" : "\n") + segmented.title + "\n";
-    segmented.explained += cli::explanation(series, phases, power, screen_of(call));
+    segmented.explained += cli::explanation(data, phases, power, screen_of(call));
 }
 
 /// The flights of several logs and folders. One that cannot be used is skipped.

@@ -30,12 +30,12 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
     return cli::from_flights<report::FlightTrendData>(
         chosen, arguments.flights, [&](const std::string& file, flight::LoadedFlight& loaded) {
             if (!loaded.exclusion.empty()) {
-                cli::warn(call, fmt::format("excluded: {}: {}", loaded.series.flight, loaded.exclusion));
+                cli::warn(call, fmt::format("excluded: {}: {}", loaded.data.flight, loaded.exclusion));
                 return std::vector<report::FlightTrendData>{};
             }
             report::ReportFlight flight;
-            flight.name = loaded.series.flight;
-            flight.series = std::move(loaded.series);
+            flight.name = loaded.data.flight;
+            flight.data = std::move(loaded.data);
             flight.phases = std::move(loaded.phases);
             auto flown = extract_trend_data(flight);
             if (!flown.no_record_reason.empty())

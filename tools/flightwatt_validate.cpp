@@ -7,7 +7,6 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
-#include "flight/selected_track.h"
 #include "stages.h"
 
 #include <algorithm>
@@ -23,7 +22,6 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
                                                    mechanical::MeasuredFlights measured, double until_s) {
     for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
     std::vector<mechanical::MeasuredFlight> flights;
-    const flight::SelectedTracks tracks(loaded.series);
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
         try {
@@ -32,7 +30,7 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
             auto spans = mechanical::phase_spans(sortie);
             for (auto& span : spans) span.start_s = std::max(span.start_s, flight.flown->until_s);
             std::erase_if(spans, [](const auto& span) { return span.duration_s() <= 0.0; });
-            flight.remaining = mechanical::bin_flight(tracks, spans).bins;
+            flight.remaining = mechanical::bin_flight(loaded.data, spans).bins;
             flights.push_back(std::move(flight));
         } catch (const NoResultError& error) {
             cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));

@@ -79,11 +79,11 @@ FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, con
     auto load = options.load;
     load.power_required = false;
     auto loaded = flight::load_flight(file, load);
-    loaded.series.flight = log.flight;
+    loaded.series.flight = loaded.data.flight = log.flight;
     auto record = record_of(loaded);
     record.not_fitted_reason = log.why_not_fitted;
     const auto series_csv = to_csv(loaded.series);
-    const auto phases_csv = flight::phases_csv(loaded.series, loaded.phases);
+    const auto phases_csv = flight::phases_csv(loaded.data, loaded.phases);
     record.results = results_fingerprint(series_csv, phases_csv);
     write_result(options, log.flight, series_suffix, series_csv);
     write_result(options, log.flight, phases_suffix, phases_csv);

@@ -2,7 +2,6 @@
 
 #include "base/fingerprint.h"
 #include "flight/power_check.h"
-#include "flight/selected_track.h"
 #include "mechanical/flight_bins.h"
 
 #include <string_view>
@@ -39,6 +38,12 @@ Fields<PhaseStatistics> record_fields(const PhaseStatistics*) {
 Fields<FlightContent> record_fields(const FlightContent*) {
     using R = FlightContent;
     return {field("fingerprint", &R::fingerprint), field("has_definitions", &R::has_definitions)};
+}
+
+Fields<CircuitShare> record_fields(const CircuitShare*) {
+    using R = CircuitShare;
+    return {field("name", &R::name, "its battery monitors"), field("energy_wh", &R::energy_wh, "energy in flight"),
+            field("percent", &R::percent, "of the energy of all circuits")};
 }
 
 }  // namespace flight
@@ -178,6 +183,7 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("error", &R::error, "reason of a rejected log", csv_column{}),
             field("current_origin", &R::current_origin),
             field("phases", &R::phases),
+            field("circuits", &R::circuits),
             field("warnings", &R::warnings),
             field("power_faults", &R::power_faults),
             field("lacks_power", &R::no_power_reason),
@@ -189,22 +195,23 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
 }
 
 FlightRecord record_of(const flight::LoadedFlight& loaded) {
-    const auto& series = loaded.series;
+    const auto& data = loaded.data;
     const auto& phases = loaded.phases;
     FlightRecord record;
-    record.flight = series.flight;
+    record.flight = data.flight;
     record.accepted = true;
-    record.aircraft_id = series.aircraft_id;
-    record.aircraft_name = series.aircraft_name;
-    record.payload_kg = payload_kg(series);
-    record.content = content_of(series);
-    record.power_source = power_track(series).source;
-    record.current_origin = to_string(series.current_origin);
+    record.aircraft_id = data.aircraft_id;
+    record.aircraft_name = data.aircraft_name;
+    record.payload_kg = first_value(data.payload_kg);
+    record.content = content_of(loaded.series);
+    record.power_source = data.power_w.source;
+    record.current_origin = to_string(data.current_origin);
     record.warnings = loaded.warnings;
     record.power_faults = loaded.power.power_faults;
     record.no_power_reason = loaded.lacks_power;
-    if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(series, phases, 0);
-    const flight::PowerStatistics power(series);
+    if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(data, phases, 0);
+    record.circuits = circuit_shares(data, phases);
+    const flight::PowerStatistics power(data);
     for (const auto& sortie : phases.sorties) {
         for (const auto& span : sortie.phases) {
             record.phases.push_back({sortie.number, span.phase, span.start.time_s, span.end.time_s, span.start.gap_s,

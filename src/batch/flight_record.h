@@ -13,6 +13,7 @@
 
 namespace flightwatt::flight {
 Fields<PhaseStatistics> record_fields(const PhaseStatistics*);
+Fields<CircuitShare> record_fields(const CircuitShare*);
 }
 
 namespace flightwatt::batch {
@@ -40,10 +41,11 @@ struct FlightRecord {
     bool is_of_other_aircraft = false;  ///< rejected as it has no data of --aircraft
     std::string aircraft_id;
     std::string aircraft_name;
-    std::optional<double> payload_kg;  ///< see flight::payload_kg
+    std::optional<double> payload_kg;  ///< that the log states
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
+    std::vector<flight::CircuitShare> circuits;  ///< see flight::circuit_shares
     std::vector<std::string> warnings;
     std::vector<std::string> power_faults;  ///< see PowerReport
     std::string no_power_reason;            ///< empty: power was measured

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "batch/batch_files.h"
 #include "flight/phases_file.h"
+#include "flight/select.h"
 #include "flight/series_file.h"
 
 #include <algorithm>
@@ -136,7 +137,7 @@ void copy_renamed(const std::filesystem::path& out, const MergedFlight& source, 
         const auto phases = flight::read_phases_csv(result_path(source.from, source.flight, phases_suffix));
         series.flight = name;
         series_text = to_csv(series);
-        phases_text = flight::phases_csv(series, phases);
+        phases_text = flight::phases_csv(select_tracks(series), phases);
     }
     record = renamed(std::move(record), name);
     if (record.accepted) record.results = results_fingerprint(series_text, phases_text);

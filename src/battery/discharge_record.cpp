@@ -25,24 +25,24 @@ constexpr std::size_t min_samples = 50;
 
 constexpr auto needed = "a battery is identified from measured voltage and current";
 
-void require_samples(const flight::FlightSeries& series, std::size_t samples) {
+void require_samples(const flight::FlightData& data, std::size_t samples) {
     if (samples >= min_samples) return;
-    throw InputError({series.file},
-                     fmt::format("{}: has {} samples, expected at least {}", series.flight, samples, min_samples),
+    throw InputError({data.file},
+                     fmt::format("{}: has {} samples, expected at least {}", data.flight, samples, min_samples),
                      needed);
 }
 
-void require_channels(const flight::FlightSeries& series, const PackRecord& record) {
+void require_channels(const flight::FlightData& data, const PackRecord& record) {
     const auto refuse = [&](const std::string& reason, const std::string& hint) {
-        throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason), hint);
+        throw InputError({data.file}, fmt::format("{}: {}", data.flight, reason), hint);
     };
-    if (series.current_origin == flight::CurrentOrigin::throttle) {
+    if (data.current_origin == flight::CurrentOrigin::throttle) {
         refuse("its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured",
                "use flights with a current sensor");
     }
     if (record.voltage_v.empty()) refuse("has no voltage", needed);
     if (record.current_a.empty()) refuse("has no current", needed);
-    require_samples(series, record.time_s.size());
+    require_samples(data, record.time_s.size());
     for (const auto& [name, values] : {std::pair{"voltage", &record.voltage_v}, {"current", &record.current_a}}) {
         const auto [low, high] = std::minmax_element(values->begin(), values->end());
         if (*low == *high) refuse(fmt::format("its {} is {} throughout", name, *low), needed);
@@ -93,7 +93,7 @@ void mark_used(const std::vector<double>& throttle_percent, DischargeRecord& rec
     }
 }
 
-void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
+void add_rest(const flight::FlightData& data, DischargeRecord& record) {
     double max_a = 0.0;
     for (std::size_t i = 0; i < record.used.size(); ++i)
         if (record.used[i]) max_a = std::max(max_a, record.current_a[i]);
@@ -103,7 +103,7 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     if (end == 0 || end == record.current_a.size()) {
         const auto* const reason =
             end == 0 ? "its log does not begin at rest: its initial charge is unknown" : "nothing loads the battery";
-        throw InputError({series.file}, fmt::format("{}: {}", series.flight, reason),
+        throw InputError({data.file}, fmt::format("{}: {}", data.flight, reason),
                          "a log that begins before take-off is needed");
     }
     std::vector<double> voltages_v;
@@ -117,33 +117,31 @@ void add_rest(const flight::FlightSeries& series, DischargeRecord& record) {
     record.resting_current_a = median_high(std::move(currents_a));
 }
 
-void fill_record(const flight::SelectedTracks& tracks, const PackRecord& part, DischargeRecord& record) {
-    const auto& series = tracks.series();
-    require_samples(series, part.time_s.size());
+void fill_record(const flight::FlightData& data, const PackRecord& part, DischargeRecord& record) {
+    require_samples(data, part.time_s.size());
     record.time_s = part.time_s;
     record.voltage_v = part.voltage_v;
     record.current_a = part.current_a;
     add_charge(part.counter_ah, record);
     mark_used(part.throttle_percent, record);
-    add_rest(series, record);
+    add_rest(data, record);
     record.resolution_v = min_difference(record.voltage_v);
-    const auto temperature_c = sample_selected_track(tracks, "air_temperature_c", record.time_s);
+    const auto temperature_c = resample(data.air_temperature_c, record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
 }
 
 }  // namespace
 
-DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
-    const auto& series = tracks.series();
+DischargeRecords discharge_records(const flight::FlightData& data) {
     PackRecord whole;
-    whole.time_s = tracks["power_w"].time_s;
-    whole.voltage_v = sample_selected_track(tracks, "voltage_v", whole.time_s);
-    whole.current_a = sample_selected_track(tracks, "current_a", whole.time_s);
-    require_channels(series, whole);
-    whole.counter_ah = sample_selected_track(tracks, "charge_ah", whole.time_s);
-    whole.throttle_percent = sample_selected_track(tracks, "throttle_percent", whole.time_s);
+    whole.time_s = data.power_w.time_s;
+    whole.voltage_v = resample(data.voltage_v, whole.time_s);
+    whole.current_a = resample(data.current_a, whole.time_s);
+    require_channels(data, whole);
+    whole.counter_ah = resample(data.charge_ah, whole.time_s);
+    whole.throttle_percent = resample(data.throttle_percent, whole.time_s);
     DischargeRecords found;
-    const auto stands = [&altitude = tracks["altitude_m"]](double time_s) {  // in a glide a pack recovers, too
+    const auto stands = [&altitude = data.altitude_m](double time_s) {  // in a glide a pack recovers, too
         constexpr flight::SegmentationOptions rest;
         const auto at_m = [&](double later_s) { return value_at(altitude, time_s + later_s); };
         return altitude.empty() || std::abs(at_m(rest.rest_s) - at_m(-rest.rest_s)) <= rest.rest_height_m;
@@ -151,17 +149,17 @@ DischargeRecords discharge_records(const flight::SelectedTracks& tracks) {
     const auto parts = split_at_pack_changes(std::move(whole), found.notes, stands);
     for (std::size_t p = 0; p < parts.size(); ++p) {
         DischargeRecord record;
-        record.flight = p == 0 ? series.flight : fmt::format("{}#{}", series.flight, p + 1);
+        record.flight = p == 0 ? data.flight : fmt::format("{}#{}", data.flight, p + 1);
         record.is_other_pack = p > 0;
         try {
-            fill_record(tracks, parts[p], record);
+            fill_record(data, parts[p], record);
             found.records.push_back(std::move(record));
         } catch (const InputError& error) {
             if (parts.size() == 1) throw;
             found.notes.push_back(fmt::format("pack {} is not used: {}", p + 1, error.what()));
         }
     }
-    if (found.records.empty()) throw InputError({series.file}, fmt::format("{}", fmt::join(found.notes, "; ")));
+    if (found.records.empty()) throw InputError({data.file}, fmt::format("{}", fmt::join(found.notes, "; ")));
     return found;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "battery/battery.h"
+#include "flight/flight_data.h"
 #include "flight/flight_series.h"
-#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <optional>
@@ -39,7 +39,7 @@ struct DischargeRecords {
 /// exceeds 15 % of its maximum; its resting voltage and current are medians of the last 30 s. Bursts above 1 A at idle
 /// throttle are not used. Throws InputError, naming the flight, for a voltage or current that is missing, constant or
 /// computed from throttle, and where no record begins at rest.
-DischargeRecords discharge_records(const flight::SelectedTracks& tracks);
+DischargeRecords discharge_records(const flight::FlightData& data);
 
 std::ptrdiff_t used_sample_count(const DischargeRecord& record);
 

@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,11 +30,11 @@ std::optional<flight::Phase> phase_at(const flight::FlightPhases& phases, double
     return std::nullopt;
 }
 
-void set_clock(FlownTrack& track, const flight::FlightSeries& series) {
-    if (series.start_clock_s && *series.start_clock_s > 0.0) {
+void set_clock(FlownTrack& track, const flight::FlightData& data) {
+    if (data.start_clock_s && *data.start_clock_s > 0.0) {
         track.clock = TrackClock::log;
-        track.start_clock_s = *series.start_clock_s;
-    } else if (const auto start = flight::start_in_name(series.flight)) {
+        track.start_clock_s = *data.start_clock_s;
+    } else if (const auto start = flight::start_in_name(data.flight)) {
         track.clock = TrackClock::name;
         track.start_clock_s = static_cast<double>(start->time_since_epoch().count());
     }
@@ -171,19 +170,19 @@ std::string description(const FlownTrack& track, const TrackSegment& segment) {
 
 }  // namespace
 
-FlownTrack flown_track(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
-    const auto latitude = select_track(series, "latitude_deg");
-    const auto longitude = sample_selected_track(series, "longitude_deg", latitude.time_s);
+FlownTrack flown_track(const flight::FlightData& data, const flight::FlightPhases& phases) {
+    const auto& latitude = data.latitude_deg;
+    const auto longitude = resample(data.longitude_deg, latitude.time_s);
     if (latitude.time_s.size() < 2 || longitude.empty()) {
-        const bool in_metres = !select_track(series, "east_m").empty();
-        throw InputError({series.file},
+        const bool in_metres = !data.east_m.empty();
+        throw InputError({data.file},
                          in_metres ? "has positions only in metres, from an unknown origin" : "has no positions",
                          "expected GPS, GPS_INT or GPS_LLA messages, or latitude_deg and longitude_deg in a series");
     }
-    FlownTrack track{series.flight, flight::describe_aircraft(series.aircraft_id, series.aircraft_name), {}};
-    set_clock(track, series);
-    const auto altitude = sample_selected_track(series, "altitude_m", latitude.time_s);
-    const auto power = sample_selected_track(series, "power_w", latitude.time_s);
+    FlownTrack track{data.flight, flight::describe_aircraft(data.aircraft_id, data.aircraft_name), {}};
+    set_clock(track, data);
+    const auto altitude = resample(data.altitude_m, latitude.time_s);
+    const auto power = resample(data.power_w, latitude.time_s);
     for (std::size_t i = 0; i < latitude.time_s.size(); ++i) {
         TrackPoint point{latitude.time_s[i], longitude[i], latitude.value[i]};
         if (!altitude.empty()) point.altitude_m = altitude[i];

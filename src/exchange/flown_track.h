@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/flight_series.h"
 
 #include <cstddef>
 #include <optional>
@@ -35,7 +35,7 @@ struct FlownTrack {
 };
 
 /// A point for each position in degrees, with altitude and power at its time. Throws InputError for fewer than two.
-FlownTrack flown_track(const flight::FlightSeries& series, const flight::FlightPhases& phases);
+FlownTrack flown_track(const flight::FlightData& data, const flight::FlightPhases& phases);
 
 /// "2020-07-03T10:17:45.170Z"; the track has a clock.
 std::string utc_text(const FlownTrack& track, double time_s);

@@ -2,7 +2,6 @@
 
 #include "base/fingerprint.h"
 #include "flight/flight_phases.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <array>

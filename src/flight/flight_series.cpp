@@ -91,6 +91,7 @@ double state_at(const Track& track, double time_s) {
 
 std::vector<double> resample(const Track& track, const std::vector<double>& time_s) {
     std::vector<double> values;
+    if (track.empty()) return values;
     values.reserve(time_s.size());
     std::size_t after = 0;
     for (const double t : time_s) {
@@ -139,6 +140,15 @@ const std::vector<std::string>& track_names() {
                                                 "ground_altitude_m",
                                                 "payload_kg"};
     return names;
+}
+
+double last_time_s(const FlightSeries& series) {
+    double end_s = -std::numeric_limits<double>::infinity();
+    for (const auto& track : series.tracks) {
+        const bool counts = track.name == "power_w" || track.name == "altitude_m";
+        if (counts && !track.empty()) end_s = std::max(end_s, track.time_s.back());
+    }
+    return end_s;
 }
 
 void replace_track(FlightSeries& series, Track track) {

@@ -25,13 +25,6 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
-/// A selected track, and the parts of the log that are not used for it.
-struct TrackSelection {
-    Track track = {};
-    std::vector<std::string> removal_notes = {};     ///< removed samples, unusable sources
-    std::vector<std::string> rejected_sources = {};  ///< sources of power with the reason of their rejection
-};
-
 /// Treatment of several values at the same time.
 enum class Merge {
     mean,   ///< measurements
@@ -63,7 +56,7 @@ double value_at(const Track& track, double time_s);
 /// The last value at or before `time_s` (before the track begins, the first). The track must not be empty.
 double state_at(const Track& track, double time_s);
 
-/// value_at for every time, in one pass: `time_s` must rise.
+/// value_at for every time, in one pass: `time_s` must rise. Empty for an empty track.
 std::vector<double> resample(const Track& track, const std::vector<double>& time_s);
 
 /// Integral of any channel over time between two times, linear between samples [channel * s].
@@ -89,9 +82,11 @@ struct ClockRestart {
     bool operator==(const ClockRestart&) const = default;
 };
 
-/// The tracks of one aircraft in one log, several of one name if several messages have the quantity. The selection
-/// among them is made on use (selected_track.h), so that a truncated series equals the series of a log that ends there.
-struct FlightSeries {
+inline constexpr auto sum_monitor = "sum";
+inline constexpr auto escs_monitor = "ESCs";
+
+/// What a log states of a flight beside its tracks.
+struct FlightInfo {
     std::string file;           ///< for errors
     std::string flight;         ///< the log's name without folder and ending
     std::string aircraft_id;    ///< as in the log; empty if unknown (a plain CSV)
@@ -103,19 +98,31 @@ struct FlightSeries {
     std::optional<double> planned_ground_altitude_m;
     std::optional<double> start_clock_s;     ///< Unix time of the log's second 0
     std::map<int, std::string> block_names;  ///< of the track "block"
-    bool log_is_missing = false;             ///< telemetry without a .log
+    /// What battery monitors measure by the log's parameters, by id: sum_monitor or escs_monitor.
+    std::map<std::string, std::string> monitor_kinds;
+    bool log_is_missing = false;  ///< telemetry without a .log
 
-    std::vector<Track> tracks;  ///< in the order of track_names(), of one name the best first
     std::vector<telemetry::AssumedDefinition> assumed_definitions;
     std::vector<telemetry::SkippedLines> skipped;  ///< by first line
     std::optional<ClockRestart> clock_restart;
     std::vector<std::string> notes;  ///< changes of the series, for the user
+
+    bool operator==(const FlightInfo&) const = default;
+};
+
+/// The tracks of one aircraft in one log as logged, several of one name if several messages have the quantity.
+/// select_tracks() chooses among them, so that a truncated series equals the series of a log that ends there.
+struct FlightSeries : FlightInfo {
+    std::vector<Track> tracks;  ///< in the order of track_names(), of one name the best first
 
     bool operator==(const FlightSeries&) const = default;
 };
 
 /// All names of tracks, in the order of the series file's columns.
 const std::vector<std::string>& track_names();
+
+/// The last time at which any source of power or altitude was logged; -infinity without any.
+double last_time_s(const FlightSeries& series);
 
 /// Replaces all tracks of that name.
 void replace_track(FlightSeries& series, Track track);

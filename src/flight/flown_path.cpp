@@ -2,10 +2,11 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -28,13 +29,10 @@ std::vector<double> interval_edges(const PhaseSpan& phase) {
 }
 
 /// A track at the times; throws InputError if the log has none.
-std::vector<double> required_at(const FlightSeries& series, const char* name, const std::vector<double>& times_s) {
-    auto values = sample_selected_track(series, name, times_s);
-    if (values.empty()) {
-        throw InputError({series.file}, std::string("has no ") + name,
-                         "a flown path needs airspeed, altitude and position");
-    }
-    return values;
+std::vector<double> required_at(const FlightData& data, const Track& track, const char* name,
+                                const std::vector<double>& times_s) {
+    if (!track.empty()) return resample(track, times_s);
+    throw InputError({data.file}, fmt::format("has no {}", name), "a flown path needs airspeed, altitude and position");
 }
 
 /// Cube root of the mean cube between two times.
@@ -84,14 +82,16 @@ void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::
 }
 
 /// The track at about every second, including both ends.
-GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double from_s, double to_s) {
+GroundTrack ground_track(const FlightData& data, bool is_geographic, double from_s, double to_s) {
     GroundTrack track;
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::round((to_s - from_s) / track_every_s)));
     track.time_s.resize(steps + 1);
     for (std::size_t i = 0; i <= steps; ++i)
         track.time_s[i] = from_s + (to_s - from_s) * static_cast<double>(i) / static_cast<double>(steps);
-    track.first = required_at(series, is_geographic ? "latitude_deg" : "east_m", track.time_s);
-    track.second = required_at(series, is_geographic ? "longitude_deg" : "north_m", track.time_s);
+    track.first = is_geographic ? required_at(data, data.latitude_deg, "latitude_deg", track.time_s)
+                                : required_at(data, data.east_m, "east_m", track.time_s);
+    track.second = is_geographic ? required_at(data, data.longitude_deg, "longitude_deg", track.time_s)
+                                 : required_at(data, data.north_m, "north_m", track.time_s);
     if (is_geographic) {
         track.metres_per_first = units::metre_per_degree;  // affects only the tolerance
         track.metres_per_second = units::metre_per_degree * std::cos(track.first.front() / units::degree_per_rad);
@@ -101,19 +101,18 @@ GroundTrack ground_track(const FlightSeries& series, bool is_geographic, double 
 
 }  // namespace
 
-FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase) {
+FlownPath flown_path(const FlightData& data, const PhaseSpan& phase) {
     const auto edges_s = interval_edges(phase);
-    required_at(series, "airspeed_m_per_s", {edges_s.front()});
-    const auto airspeed = select_track(series, "airspeed_m_per_s");
-    const auto altitude_m = required_at(series, "altitude_m", edges_s);
+    required_at(data, data.airspeed_m_per_s, "airspeed_m_per_s", {edges_s.front()});
+    const auto altitude_m = required_at(data, data.altitude_m, "altitude_m", edges_s);
     FlownPath path;
-    path.is_geographic = select_track(series, "east_m").empty() && !select_track(series, "latitude_deg").empty();
+    path.is_geographic = data.east_m.empty() && !data.latitude_deg.empty();
     for (std::size_t part = 0; part + 1 < edges_s.size(); ++part) {
         const double start_s = edges_s[part];
         const double duration_s = edges_s[part + 1] - start_s;
-        const auto track = ground_track(series, path.is_geographic, start_s, edges_s[part + 1]);
+        const auto track = ground_track(data, path.is_geographic, start_s, edges_s[part + 1]);
         if (part == 0) path.waypoints.push_back({track.first.front(), track.second.front(), altitude_m.front()});
-        const double mean_m_per_s = mean_airspeed(airspeed, start_s, edges_s[part + 1]);
+        const double mean_m_per_s = mean_airspeed(data.airspeed_m_per_s, start_s, edges_s[part + 1]);
         std::vector<std::size_t> chosen;
         add_bends(track, 0, track.time_s.size() - 1, chosen);
         chosen.push_back(track.time_s.size() - 1);

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/flight_series.h"
 
 #include <vector>
 
@@ -24,6 +24,6 @@ struct FlownPath {
 /// The path of a phase: points about every 30 s (the interval of the physical fit), and in between as many as straight
 /// lines need to stay within 3 m of the ground track. Airspeed is the mean of each interval, altitude is linear in it:
 /// faster changes exchange height and speed. Throws InputError without airspeed, altitude or position.
-FlownPath flown_path(const FlightSeries& series, const PhaseSpan& phase);
+FlownPath flown_path(const FlightData& data, const PhaseSpan& phase);
 
 }  // namespace flightwatt::flight

@@ -6,7 +6,7 @@
 #include "base/overwrite_guard.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
+#include "flight/select.h"
 #include "flight/series_file.h"
 #include "flight/sources/log_family.h"
 #include "flight/telemetry_series.h"
@@ -55,16 +55,17 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
 /// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
 FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
     auto series = choose_aircraft(read_candidates(file, aircraft_id));
-    const bool needs_power = power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
-    if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, shown_census(file));
+    const auto data = select_tracks(series);
+    const bool needs_power = power_required || data.altitude_m.time_s.size() < min_altitudes;
+    if (data.clock_restart || (needs_power && data.power_w.empty())) require_power(data, shown_census(file));
     return series;
 }
 
 /// Why the aircraft did not fly; empty if it did.
 std::string not_flown_reason(const FlightSeries& series) {
-    const SelectedTracks tracks(series);
-    if (tracks["altitude_m"].time_s.size() < min_altitudes) return "no altitude";
-    const auto phases = segment(tracks);
+    const auto data = select_tracks(series);
+    if (data.altitude_m.time_s.size() < min_altitudes) return "no altitude";
+    const auto phases = segment(data);
     if (!phases.sorties.empty()) return "";
     return phases.ground_events.empty() ? "no motion" : phases.ground_events.front().what;
 }
@@ -80,23 +81,22 @@ void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::str
 std::string parenthesised(const std::string& text) { return text.empty() ? "" : fmt::format(" ({})", text); }
 
 /// Limits sorties times samples: a log of a day with twenty sorties at 10 Hz has 17 million.
-void limit_work(const SelectedTracks& tracks, const FlightPhases& phases) {
+void limit_work(const FlightData& data, const FlightPhases& phases) {
     constexpr std::size_t max_work = 100'000'000;
-    const auto samples = tracks["power_w"].time_s.size();
+    const auto samples = data.power_w.time_s.size();
     if (phases.sorties.size() * samples <= max_work) return;
-    throw InputError({tracks.series().file},
-                     fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
+    throw InputError({data.file}, fmt::format("{} sorties in {} samples of power", phases.sorties.size(), samples),
                      "is it the log of one flight? Split it, or select a sortie with --sortie N");
 }
 
-std::vector<std::string> all_warnings(const SelectedTracks& tracks, const FlightPhases& phases,
+std::vector<std::string> all_warnings(const FlightData& data, const FlightPhases& phases,
                                       const FlightAssessment& assessment) {
-    auto warnings = warnings_of(tracks);
+    auto warnings = selection_warnings(data);
     if (!assessment.lacks_power.empty())
         warnings.push_back(assessment.lacks_power + ": the energy of its phases is unknown");
     for (const auto* more : {&phases.warnings, &assessment.power.warnings})
         warnings.insert(warnings.end(), more->begin(), more->end());
-    const PowerStatistics power(tracks.series());
+    const PowerStatistics power(data);
     for (const auto& sortie : phases.sorties)
         if (const double lost_s = power.between(sortie.start_s(), sortie.end_s()).lost_s; lost_s > 0.0)
             warnings.push_back(
@@ -104,7 +104,7 @@ std::vector<std::string> all_warnings(const SelectedTracks& tracks, const Flight
     return warnings;
 }
 
-std::string exclusion_of(const FlightSeries& series, const FlightAssessment& assessment, const LoadOptions& options) {
+std::string exclusion_of(const FlightInfo& series, const FlightAssessment& assessment, const LoadOptions& options) {
     if (options.excluded.contains(series.flight)) return "--exclude names it";
     if (assessment.lacks_power.empty() && options.keep.contains(series.flight)) return "";
     if (auto reason = simulation_reason(series.aircraft_name, options); !reason.empty()) return reason;
@@ -277,16 +277,14 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
     return std::move(candidates[last]);
 }
 
-FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
-                               const SegmentationOptions& options) {
-    const auto& series = tracks.series();
-    const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
-    const bool has_power = !tracks["power_w"].empty();
+FlightAssessment assess_flight(const FlightData& data, const FlightPhases& phases, const SegmentationOptions& options) {
+    const bool has_altitude = data.altitude_m.time_s.size() >= min_altitudes;
+    const bool has_power = !data.power_w.empty();
     FlightAssessment assessment;
-    if (!has_power) assessment.lacks_power = "no measured power" + parenthesised(no_power_reason(series));
-    assessment.power.origin = series.current_origin;
-    if (has_altitude && has_power) assessment.power = check_power_record(tracks, phases, options);
-    assessment.warnings = all_warnings(tracks, phases, assessment);
+    if (!has_power) assessment.lacks_power = "no measured power" + parenthesised(no_power_reason(data));
+    assessment.power.origin = data.current_origin;
+    if (has_altitude && has_power) assessment.power = check_power_record(data, phases, options);
+    assessment.warnings = all_warnings(data, phases, assessment);
     return assessment;
 }
 
@@ -303,25 +301,22 @@ std::string exclusion_reason(const FlightAssessment& assessment) {
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) {
     LoadedFlight loaded;
     FlightAssessment& assessment = loaded;
-    {
-        const SelectedTracks tracks(series);
-        const bool has_altitude = tracks["altitude_m"].time_s.size() >= min_altitudes;
-        if (options.power_required || !has_altitude || series.clock_restart) require_power(series);
-        if (options.flight_required || has_altitude) loaded.phases = segment(tracks, options.segmentation);
-        if (options.flight_required) require_sortie(series, loaded.phases, series.file);
-        if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, series.file);
-        if (options.flight_required) limit_work(tracks, loaded.phases);
-        assessment = assess_flight(tracks, loaded.phases, options.segmentation);
-        loaded.sources = track_sources(tracks);
-    }
+    auto data = select_tracks(series);
+    const bool has_altitude = data.altitude_m.time_s.size() >= min_altitudes;
+    if (options.power_required || !has_altitude || data.clock_restart) require_power(data);
+    if (options.flight_required || has_altitude) loaded.phases = segment(data, options.segmentation);
+    if (options.flight_required) require_sortie(data, loaded.phases, data.file);
+    if (options.sortie) restrict_to_sortie(loaded.phases, *options.sortie, data.file);
+    if (options.flight_required) limit_work(data, loaded.phases);
+    assessment = assess_flight(data, loaded.phases, options.segmentation);
     if (options.correct_idle_offset && loaded.lacks_power.empty()) {
-        correct_idle_offset(series, loaded.power.idle);
-        const SelectedTracks tracks(series);
-        loaded.warnings = all_warnings(tracks, loaded.phases, assessment);
-        loaded.sources = track_sources(tracks);
+        correct_idle_offset(series, data, loaded.power.idle);
+        data = select_tracks(series);
+        loaded.warnings = all_warnings(data, loaded.phases, assessment);
     }
-    loaded.exclusion = exclusion_of(series, assessment, options);
+    loaded.exclusion = exclusion_of(data, assessment, options);
     loaded.series = std::move(series);
+    loaded.data = std::move(data);
     return loaded;
 }
 

@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "flight/column_map.h"
+#include "flight/flight_data.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
@@ -47,9 +47,9 @@ struct FlightAssessment {
 
 struct LoadedFlight : FlightAssessment {
     FlightSeries series;  ///< with the idle offset corrected, if requested
+    FlightData data;      ///< selected from it
     FlightPhases phases;
-    std::string exclusion = {};                       ///< why the flight is excluded; empty if it is used
-    std::map<std::string, std::string> sources = {};  ///< source of each selected track, by name
+    std::string exclusion = {};  ///< why the flight is excluded; empty if it is used
 };
 
 /// A text or binary log with its .log, a log of another autopilot, or a CSV, in memory. `messages` (a messages.xml or
@@ -115,7 +115,7 @@ std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::opt
 /// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several.
 FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
 
-FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
+FlightAssessment assess_flight(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
 /// Why a flight of this aircraft is not used, as a simulator flew it; empty if it is used.

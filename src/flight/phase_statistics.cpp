@@ -2,7 +2,7 @@
 
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "flight/selected_track.h"
+#include "flight/flight_data.h"
 
 #include <algorithm>
 
@@ -14,11 +14,11 @@ std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
 }
 
 /// The samples before intervals in which bytes of the log are damaged and a sample is lost.
-std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const std::vector<double>& time_s) {
+std::vector<std::size_t> samples_before_damage(const FlightData& data, const std::vector<double>& time_s) {
     constexpr double lost_intervals = 1.5;
     const double lost_s = lost_intervals * median_interval_s(time_s);
     std::vector<std::size_t> before;
-    for (const auto& skipped : series.skipped) {
+    for (const auto& skipped : data.skipped) {
         if (skipped.unit != telemetry::SkippedLines::Unit::byte) continue;
         for (const auto& at : skipped.lines) {
             const auto next = first_at_or_after(time_s, at.time_s);
@@ -33,19 +33,32 @@ std::vector<std::size_t> samples_before_damage(const FlightSeries& series, const
 
 }  // namespace
 
-double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s) {
-    return integrated_energy_wh(power_track(series), start_s, end_s);
-}
-
 double integrated_energy_wh(const Track& power_w, double start_s, double end_s) {
     return units::wh_from_joule(integrated(power_w.time_s, power_w.value, start_s, end_s));
 }
 
-PowerStatistics::PowerStatistics(const FlightSeries& series)
-    : power_(power_track(series)),
-      counter_wh_(sample_selected_track(series, "energy_wh", power_.time_s)),
+std::vector<CircuitShare> circuit_shares(const FlightData& data, const FlightPhases& phases) {
+    std::vector<CircuitShare> shares;
+    double all_wh = 0.0;
+    for (const auto& circuit : data.circuits) {
+        const auto& power = circuit.power_w;
+        CircuitShare share{circuit.name};
+        for (const auto& sortie : phases.sorties)
+            share.energy_wh += integrated_energy_wh(power, sortie.start_s(), sortie.end_s());
+        if (phases.sorties.empty() && !power.empty())
+            share.energy_wh = integrated_energy_wh(power, power.time_s.front(), power.time_s.back());
+        all_wh += share.energy_wh;
+        shares.push_back(std::move(share));
+    }
+    for (auto& share : shares) share.percent = all_wh > 0.0 ? units::percentage(share.energy_wh, all_wh) : 0.0;
+    return shares;
+}
+
+PowerStatistics::PowerStatistics(const FlightData& data)
+    : power_(data.power_w),
+      counter_wh_(resample(data.energy_wh, power_.time_s)),
       gap_s_(gap_threshold_s(power_.time_s)),
-      lost_(samples_before_damage(series, power_.time_s)) {}
+      lost_(samples_before_damage(data, power_.time_s)) {}
 
 PhaseStatistics PowerStatistics::between(double start_s, double end_s) const {
     PhaseStatistics statistics;

@@ -1,9 +1,11 @@
 #pragma once
 
-#include "flight/flight_series.h"
+#include "flight/flight_data.h"
+#include "flight/flight_phases.h"
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -19,10 +21,20 @@ struct PhaseStatistics {
     double lost_s = 0.0;  ///< in gaps of damaged bytes: their power is not known
 };
 
+/// Part of a circuit in the energy.
+struct CircuitShare {
+    std::string name;  ///< of its battery monitors
+    double energy_wh = 0.0;
+    double percent = 0.0;  ///< of the energy of all circuits
+};
+
+/// The circuits of a log that numbers its batteries, in flight (without a flight, of the whole log); empty for others.
+std::vector<CircuitShare> circuit_shares(const FlightData& data, const FlightPhases& phases);
+
 /// Statistics of the power of a series, for many phases.
 class PowerStatistics {
   public:
-    explicit PowerStatistics(const FlightSeries& series);
+    explicit PowerStatistics(const FlightData& data);
 
     bool has_power() const { return !power_.empty(); }
     /// Statistics of [start_s, end_s]; without power all zero.
@@ -35,9 +47,7 @@ class PowerStatistics {
     std::vector<std::size_t> lost_;  ///< last sample before each gap in which bytes are damaged
 };
 
-/// Energy [Wh] of the series' power between two times: trapezoids, the ends interpolated.
-double integrated_energy_wh(const FlightSeries& series, double start_s, double end_s);
-/// The same for a power track.
+/// Energy [Wh] of a power track between two times: trapezoids, the ends interpolated.
 double integrated_energy_wh(const Track& power_w, double start_s, double end_s);
 
 }  // namespace flightwatt::flight

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "flight/checks/runs.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 
 #include <cmath>
 #include <optional>
@@ -55,10 +54,10 @@ PhaseSpan span_of(const RowReader& row) {
 }
 
 /// Time of a rotorcraft below 2 m/s over ground [s], if its speed is known.
-std::optional<double> hovering_s(const FlightSeries& series, const PhaseSpan& span) {
+std::optional<double> hovering_s(const FlightData& data, const PhaseSpan& span) {
     constexpr double max_m_per_s = 2.0;
-    const auto speed = select_track(series, "ground_speed_m_per_s");
-    if (series.firmware != "rotorcraft" || speed.empty()) return std::nullopt;
+    const auto& speed = data.ground_speed_m_per_s;
+    if (data.firmware != "rotorcraft" || speed.empty()) return std::nullopt;
     const auto& time_s = speed.time_s;
     const auto hovers = [&](std::size_t i) {
         return time_s[i] >= span.start.time_s && time_s[i] <= span.end.time_s && speed.value[i] < max_m_per_s;
@@ -68,7 +67,7 @@ std::optional<double> hovering_s(const FlightSeries& series, const PhaseSpan& sp
 
 }  // namespace
 
-std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
+std::string phases_csv(const FlightData& data, const FlightPhases& phases) {
     CsvWriter csv({"sortie",
                    "phase",
                    "start_s",
@@ -95,7 +94,7 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                    "end_to_takeoff_message_s",
                    "hovering_s"});
     const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
-    const PowerStatistics power(series);
+    const PowerStatistics power(data);
     for (const auto& sortie : phases.sorties) {
         for (const auto& span : sortie.phases) {
             const auto& [phase, start, end, complete] = span;
@@ -106,7 +105,7 @@ std::string phases_csv(const FlightSeries& series, const FlightPhases& phases) {
                     statistics.counter_energy_wh, known(statistics.gaps), known(statistics.max_gap_s), complete,
                     altitude(start), start.gap_s, start.throttle_percent, start.mode, start.block,
                     start.takeoff_after_s, altitude(end), end.gap_s, end.throttle_percent, end.mode, end.block,
-                    end.takeoff_after_s, hovering_s(series, span));
+                    end.takeoff_after_s, hovering_s(data, span));
         }
     }
     return csv.text();

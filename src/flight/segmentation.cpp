@@ -5,6 +5,7 @@
 #include "flight/segmentation/flight_rejection.h"
 #include "flight/segmentation/hover_record.h"
 #include "flight/segmentation/phase_edges.h"
+#include "flight/select.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ double gap_around_s(const std::vector<double>& sample_s, double time_s) {
 constexpr double long_gap_s = 10.0;  // for an edge between altitudes
 
 /// An edge with its evidence.
-PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& grid, double exact_s) {
+PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, double exact_s) {
     PhaseEdge edge;
     const double time_s = to_millisecond(exact_s);
     edge.time_s = time_s;
@@ -35,11 +36,11 @@ PhaseEdge describe_edge(const SelectedTracks& tracks, const ResampledFlight& gri
         return channel[std::min(static_cast<std::size_t>(std::max(index, 0L)), channel.size() - 1)];
     };
     edge.altitude_m = nearest(grid.altitude_m);
-    edge.gap_s = gap_around_s(tracks["altitude_m"].time_s, time_s);
+    edge.gap_s = gap_around_s(data.altitude_m.time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
-    if (const auto& mode = tracks["mode"]; !mode.empty()) edge.mode = static_cast<int>(state_at(mode, time_s));
-    if (const auto& block = tracks["block"]; !block.empty()) edge.block = static_cast<int>(state_at(block, time_s));
-    for (const double takeoff : tracks["takeoff"].time_s) {
+    if (const auto& mode = data.mode; !mode.empty()) edge.mode = static_cast<int>(state_at(mode, time_s));
+    if (const auto& block = data.block; !block.empty()) edge.block = static_cast<int>(state_at(block, time_s));
+    for (const double takeoff : data.takeoff.time_s) {
         const double after = takeoff - time_s;
         if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;
     }
@@ -62,7 +63,7 @@ Sortie make_sortie(const FlightCandidate& flown) {
     const auto add = [&](Phase phase, double start_s, double end_s, bool complete) {
         if (end_s <= start_s) return;
         sortie.phases.push_back(
-            {phase, describe_edge(flown.tracks, grid, start_s), describe_edge(flown.tracks, grid, end_s), complete});
+            {phase, describe_edge(flown.data, grid, start_s), describe_edge(flown.data, grid, end_s), complete});
     };
     if (edges.takeoff_end_s) add(Phase::takeoff, first_s, cruise_from, edges.lift_off_s.has_value());
     add(Phase::cruise, cruise_from, cruise_to, edges.takeoff_end_s.has_value() && edges.landing_start_s.has_value());
@@ -98,27 +99,27 @@ void validate(const SegmentationOptions& options) {
     require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
 }
 
-FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options) {
+FlightPhases segment(const FlightData& data, const SegmentationOptions& options) {
     validate(options);
-    auto grid = make_grid(tracks);
-    grid.hovers = find_hovers(tracks, grid);
-    grid.detector = tracks["landed"];
+    auto grid = make_grid(data);
+    grid.hovers = find_hovers(data, grid);
+    grid.detector = data.landed;
     FlightPhases phases;
     phases.motor_source = grid.motor_evidence;
     const auto rests = grid.hovers.empty() ? find_rests(grid, options) : rests_between(grid.hovers, grid);
     for (const auto& rest : rests) phases.rests.push_back({grid.time_s(rest.begin), grid.time_s(rest.end)});
-    auto reason = ground_vehicle_reason(tracks);
+    auto reason = ground_vehicle_reason(data);
     if (reason.empty()) reason = grid.unusable;
     if (!reason.empty()) {
         phases.ground_events.push_back({grid.time_s(0), grid.time_s(grid.size() - 1), std::move(reason)});
         return phases;
     }
     phases.warnings = grid.warnings;
-    const auto ground_m = ground_altitude_m(tracks);
+    const auto ground_m = stated_ground_altitude_m(data);
     for (const auto& activity : find_activities(grid, rests, options)) {
         const auto grounds = estimate_ground_levels(grid, activity, ground_m);
         const auto heights = compute_heights(grid, activity, grounds);
-        const FlightCandidate candidate{tracks, grid, activity, heights, options};
+        const FlightCandidate candidate{data, grid, activity, heights, options};
         auto no_flight = no_flight_reason(candidate);
         if (!no_flight.empty()) {
             phases.ground_events.push_back(
@@ -146,7 +147,7 @@ FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& op
     return phases;
 }
 
-void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file) {
+void require_sortie(const FlightData& data, const FlightPhases& phases, const std::string& file) {
     if (!phases.sorties.empty()) return;
     std::vector<std::string> events;
     for (const auto& other :
@@ -154,8 +155,7 @@ void require_sortie(const FlightSeries& series, const FlightPhases& phases, cons
         events.push_back(fmt::format("{} ({:.0f} to {:.0f} s)", other.what, other.start_s, other.end_s));
     }
     const auto instead = events.empty() ? std::string("no motion") : fmt::format("it has: {}", fmt::join(events, "; "));
-    auto clock = power_track(series);
-    if (clock.empty()) clock = select_track(series, "altitude_m");
+    const auto& clock = data.power_w.empty() ? data.altitude_m : data.power_w;
     throw InputError({file}, fmt::format("has no flight in {:.0f} s", clock.time_s.back() - clock.time_s.front()),
                      instead);
 }

@@ -1,8 +1,7 @@
 #pragma once
 
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/flight_series.h"
-#include "flight/selected_track.h"
 
 #include <string>
 
@@ -15,9 +14,9 @@ void validate(const SegmentationOptions& options);
 /// aircraft last leaves the ground on its way up, touchdown where it first is back for good; take-off ends where the
 /// held height is reached, landing begins where it is left. TAKEOFF, mode and block are recorded, but not used. Throws
 /// InputError if the series has no altitude.
-FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& options = {});
+FlightPhases segment(const FlightData& data, const SegmentationOptions& options = {});
 
 /// Throws InputError, naming `file` and the ground events, if there is no sortie.
-void require_sortie(const FlightSeries& series, const FlightPhases& phases, const std::string& file);
+void require_sortie(const FlightData& data, const FlightPhases& phases, const std::string& file);
 
 }  // namespace flightwatt::flight

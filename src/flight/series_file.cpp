@@ -6,7 +6,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
-#include "flight/selected_track.h"
+#include "flight/select.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -92,6 +92,7 @@ struct FrontMatter {
     bool present = false;
     FlightSeries series;               ///< without values; `tracks` in the order of the file's columns
     std::vector<std::string> columns;  ///< of each track
+    std::string chosen_column = {};    ///< that repeats what is chosen among the others; empty without one
 };
 
 FrontMatter read_matter(const TomlTable& table) {
@@ -107,14 +108,23 @@ FrontMatter read_matter(const TomlTable& table) {
     series.log_is_missing = table.optional_boolean("lacks_log").value_or(false);
     if (table.has("notes")) series.notes = table.strings("notes");
     if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
+    if (const auto kinds = table.optional_table("monitor_kinds"))
+        for (const auto& id : kinds->keys()) series.monitor_kinds[id] = kinds->string(id);
     for (const auto& assumed : table.tables("assumed_definition")) {
         series.assumed_definitions.push_back({assumed.string("text"), assumed.number("since_s")});
         assumed.refuse_unknown_keys();
     }
     for (const auto& skipped : table.tables("skipped")) series.skipped.push_back(read_skipped(skipped));
     for (const auto& column : table.tables("column")) {
-        matter.columns.push_back(column.string("name"));
-        series.tracks.push_back(read_track(column));
+        const auto name = column.string("name");
+        const bool is_chosen = column.optional_boolean("chosen").value_or(false);
+        auto track = read_track(column);
+        if (is_chosen) {
+            matter.chosen_column = name;
+            continue;
+        }
+        matter.columns.push_back(name);
+        series.tracks.push_back(std::move(track));
     }
     table.refuse_unknown_keys();
     return matter;
@@ -131,8 +141,25 @@ std::vector<std::string> column_names(const std::vector<Track>& tracks) {
     return names;
 }
 
+/// The tracks of the file: those of the series, behind the power that is chosen if that is not the first candidate.
+struct FileTracks {
+    std::vector<Track> tracks;
+    bool has_chosen = false;  ///< the first one is not of the series
+};
+
+FileTracks file_tracks(const FlightSeries& series) {
+    FileTracks file{series.tracks};
+    const auto first = std::ranges::find(series.tracks, "power_w", &Track::name);
+    if (first == series.tracks.end()) return file;
+    Track power = select_tracks(series).power_w;
+    if (power.empty() || (power.source == first->source && power.device == first->device)) return file;
+    file.tracks.insert(file.tracks.begin(), std::move(power));
+    file.has_chosen = true;
+    return file;
+}
+
 /// The metadata as comment lines of TOML: `# format = 1` ...
-std::string format_front_matter(const FlightSeries& series) {
+std::string format_front_matter(const FlightSeries& series, const FileTracks& file) {
     std::string toml = format_line();
     toml += fmt::format("flight = {}\naircraft_id = {}\naircraft_name = {}\n", toml_string(series.flight),
                         toml_string(series.aircraft_id), toml_string(series.aircraft_name));
@@ -148,15 +175,18 @@ std::string format_front_matter(const FlightSeries& series) {
     for (const auto& [number, name] : series.block_names) {
         toml += fmt::format("{} = {}\n", number, toml_string(name));
     }
+    if (!series.monitor_kinds.empty()) toml += "[monitor_kinds]\n";
+    for (const auto& [id, kind] : series.monitor_kinds) toml += fmt::format("{} = {}\n", id, toml_string(kind));
     for (const auto& assumed : series.assumed_definitions) {
         toml += fmt::format("[[assumed_definition]]\ntext = {}\nsince_s = {}\n", toml_string(assumed.text),
                             toml_real(assumed.since_s));
     }
     for (const auto& skipped : series.skipped) toml += skipped_text(skipped);
-    const auto columns = column_names(series.tracks);
+    const auto columns = column_names(file.tracks);
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto& track = series.tracks[i];
+        const auto& track = file.tracks[i];
         toml += fmt::format("[[column]]\nname = {}\nsource = {}\n", toml_string(columns[i]), toml_string(track.source));
+        if (i == 0 && file.has_chosen) toml += "chosen = true\n";
         if (!track.device.empty()) toml += fmt::format("device = {}\n", toml_string(track.device));
         if (std::isfinite(track.since_s)) toml += fmt::format("since_s = {}\n", toml_real(track.since_s));
     }
@@ -226,20 +256,30 @@ class TableReader {
         last_s_ = time_s;
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             if (i == time_column_ || row.cells[i].text.empty()) continue;
-            auto& track = matter_.series.tracks[track_of_[i]];
+            auto& track = columns_[i] == matter_.chosen_column ? chosen_ : matter_.series.tracks[track_of_[i]];
             track.time_s.push_back(time_s);
             track.value.push_back(number(row, i));
         }
     }
 
-    /// The series with the tracks that have a column.
+    /// The series with the tracks that have a column. Throws InputError if the chosen column was changed.
     FlightSeries take() {
         std::size_t track = 0;
         std::erase_if(matter_.series.tracks, [&](const Track&) { return !is_bound_[track++]; });
+        if (!chosen_.empty()) require_chosen();
         return std::move(matter_.series);
     }
 
   private:
+    void require_chosen() const {
+        const auto power = select_tracks(matter_.series).power_w;
+        if (power.time_s == chosen_.time_s && power.value == chosen_.value) return;
+        throw InputError({file_},
+                         fmt::format("{} is not the power that its candidates {}.2 ... give: was it changed?",
+                                     matter_.chosen_column, matter_.chosen_column),
+                         "remove the other columns of power, and the comment lines of the columns, to use your own");
+    }
+
     double number(const CsvRowView& row, std::size_t column) const {
         const auto& cell = row.cells[column];
         if (const double value = number_or_nan(cell.text); !std::isnan(value)) return value;
@@ -261,7 +301,8 @@ class TableReader {
                 throw InputError({file_, header.line}, fmt::format("column '{}' appears twice", *here),
                                  "keep one of them");
             }
-            track_of_.push_back(i == time_column_ ? 0 : find_track(header.line, *here));
+            const bool is_track = i != time_column_ && *here != matter_.chosen_column;
+            track_of_.push_back(is_track ? find_track(header.line, *here) : 0);
         }
     }
 
@@ -288,6 +329,7 @@ class TableReader {
     }
 
     FrontMatter matter_;
+    Track chosen_;  ///< the values of the chosen column
     std::string file_;
     std::vector<std::string> columns_;
     std::vector<std::size_t> track_of_;  ///< of each column
@@ -313,9 +355,9 @@ std::string to_csv(const FlightSeries& series) {
 }
 
 void write_csv(const FlightSeries& series, const TextSink& sink) {
-    const auto names = column_names(series.tracks);
-    sink(fmt::format("{}time_s,{}\n", format_front_matter(series), fmt::join(names, ",")));
-    write_rows(series.tracks, sink);
+    const auto file = file_tracks(series);
+    sink(fmt::format("{}time_s,{}\n", format_front_matter(series, file), fmt::join(column_names(file.tracks), ",")));
+    write_rows(file.tracks, sink);
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
@@ -324,8 +366,13 @@ FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path
     auto series = reader.take();
     series.file = file.string();
     if (series.flight.empty()) series.flight = telemetry::flight_name(file);
-    const auto samples = power_track(series).time_s.size();
-    const bool is_flight = samples >= 2 || (samples == 0 && select_track(series, "altitude_m").time_s.size() >= 2);
+    const auto samples = [&](std::string_view name) {
+        std::size_t most = 0;
+        for (const auto& track : series.tracks)
+            if (track.name == name) most = std::max(most, track.time_s.size());
+        return most;
+    };
+    const bool is_flight = samples("power_w") >= 2 || (samples("power_w") == 0 && samples("altitude_m") >= 2);
     if (!is_flight) throw InputError({series.file}, "has fewer than two samples");
     return series;
 }

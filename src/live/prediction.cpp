@@ -143,11 +143,11 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
 }
 
 /// From the whole record of the flight so far.
-BatteryPrediction predict_battery(const PredictionInput& input, const flight::FlightSeries& series,
+BatteryPrediction predict_battery(const PredictionInput& input, const flight::FlightData& data,
                                   const Prediction& prediction, Diagnostics& remarks) {
     for (const auto& warning : battery_warnings(*input.battery))
         remarks.warnings.push_back(fmt::format("{}: {}", input.battery_file, warning));
-    const auto records = battery::discharge_records(series);
+    const auto records = battery::discharge_records(data);
     remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
     const auto& record = records.records.back();
     const double initial_percent = initial_soc_percent(input, record);
@@ -252,13 +252,12 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
     return battery::resting_soc_percent(battery, rest_v);
 }
 
-Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightSeries& series,
+Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightData& data,
                           Diagnostics& remarks) {
     std::optional<PathFix> fix;
-    if (input.path && !input.remaining_s)
-        fix = locate_on_path(*input.path, flight::SelectedTracks(series), flown.cruise_start_s, flown.until_s);
+    if (input.path && !input.remaining_s) fix = locate_on_path(*input.path, data, flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(input, flown, fix, remarks);
-    if (input.battery) prediction.battery = predict_battery(input, series, prediction, remarks);
+    if (input.battery) prediction.battery = predict_battery(input, data, prediction, remarks);
     return prediction;
 }
 

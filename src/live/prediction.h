@@ -82,7 +82,7 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
 /// landing from now. Throws NoResultError where more charge was drawn than available, UsageError for a remaining time
 /// longer than the path, and as mechanical::predict_remaining_flight and battery::discharge_records.
 Prediction predict_flight(const PredictionInput& input, const mechanical::FlightProgress& flown,
-                          const flight::FlightSeries& series, Diagnostics& remarks);
+                          const flight::FlightData& data, Diagnostics& remarks);
 
 /// As predict_flight, without the battery. `fix`: position on the path; none: by the time since the cruise began.
 Prediction predict_energy(const PredictionInput& input, const mechanical::FlightProgress& flown,

@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,35 +53,34 @@ struct MotionTracks {
 };
 
 /// Altitude and kinetic energy, in metres of height.
-double energy_height_m(const MotionTracks& tracks, double time_s) {
-    const auto near = values_between(tracks.airspeed, time_s - edge_window_s, time_s + edge_window_s);
-    const double airspeed = near.empty() ? value_at(tracks.airspeed, time_s) : mean(near);
-    return value_at(tracks.altitude, time_s) + airspeed * airspeed / (2.0 * units::standard_gravity_m_per_s2);
+double energy_height_m(const MotionTracks& data, double time_s) {
+    const auto near = values_between(data.airspeed, time_s - edge_window_s, time_s + edge_window_s);
+    const double airspeed = near.empty() ? value_at(data.airspeed, time_s) : mean(near);
+    return value_at(data.altitude, time_s) + airspeed * airspeed / (2.0 * units::standard_gravity_m_per_s2);
 }
 
-FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& span) {
+FlightBin motion_bin(const MotionTracks& data, const flight::PhaseSegment& span) {
     FlightBin bin;
     bin.phase = span.phase;
     bin.start_s = span.start_s;
     bin.duration_s = span.end_s - span.start_s;
-    const auto speeds = values_between(tracks.airspeed, span.start_s, span.end_s);
-    const double min_m_per_s = tracks.min_m_per_s;
-    bin.power_w =
-        flight::integrated(tracks.power.time_s, tracks.power.value, span.start_s, span.end_s) / bin.duration_s;
-    bin.samples = values_between(tracks.power, span.start_s, span.end_s).size();
+    const auto speeds = values_between(data.airspeed, span.start_s, span.end_s);
+    const double min_m_per_s = data.min_m_per_s;
+    bin.power_w = flight::integrated(data.power.time_s, data.power.value, span.start_s, span.end_s) / bin.duration_s;
+    bin.samples = values_between(data.power, span.start_s, span.end_s).size();
     bin.airspeed_m_per_s = mean(speeds);
     bin.values[PowerTerm::drag] = mean_of(speeds, [](double v) { return v * v * v; });
     bin.values[PowerTerm::blade] = mean_of(speeds, [](double v) { return v * v; });
-    bin.values[PowerTerm::payload] = tracks.flight.load.payload_kg;
-    bin.values[PowerTerm::hover] = mean_of(speeds, [&](double v) { return induced_power_w(tracks.flight.load, v); });
-    if (!tracks.flight.is_rotorcraft)
+    bin.values[PowerTerm::payload] = data.flight.load.payload_kg;
+    bin.values[PowerTerm::hover] = mean_of(speeds, [&](double v) { return induced_power_w(data.flight.load, v); });
+    if (!data.flight.is_rotorcraft)
         bin.values[PowerTerm::induced] = mean_of(speeds, [&](double v) { return 1.0 / std::max(v, min_m_per_s); });
-    const double tan_squared = mean_of(values_between(tracks.roll, span.start_s, span.end_s), [](double roll_deg) {
+    const double tan_squared = mean_of(values_between(data.roll, span.start_s, span.end_s), [](double roll_deg) {
         const double bank_deg = std::min(std::abs(roll_deg), max_bank_deg);
         return std::pow(std::tan(bank_deg / units::degree_per_rad), 2);
     });
     bin.values[PowerTerm::turn] = tan_squared * bin.values[PowerTerm::induced];
-    const double climb = (energy_height_m(tracks, span.end_s) - energy_height_m(tracks, span.start_s)) / bin.duration_s;
+    const double climb = (energy_height_m(data, span.end_s) - energy_height_m(data, span.start_s)) / bin.duration_s;
     bin.values[PowerTerm::climb] = climb;
     bin.values[PowerTerm::descent] = std::min(climb, 0.0);
     bin.values[PowerTerm::constant] = 1.0;
@@ -90,24 +88,18 @@ FlightBin motion_bin(const MotionTracks& tracks, const flight::PhaseSegment& spa
 }
 
 /// Most rotorcraft have no airspeed sensor.
-std::string_view speed_of(const flight::SelectedTracks& tracks) {
-    const bool by_ground = tracks.series().firmware == "rotorcraft" && tracks["airspeed_m_per_s"].empty();
-    return by_ground ? "ground_speed_m_per_s" : "airspeed_m_per_s";
-}
-
-/// The first value of a constant of the log or its column map.
-std::optional<double> constant_of(const flight::SelectedTracks& tracks, std::string_view name) {
-    const auto& track = tracks[name];
-    return track.empty() ? std::nullopt : std::optional(track.value.front());
+const flight::Track& speed_of(const flight::FlightData& data) {
+    const bool by_ground = data.is_rotorcraft() && data.airspeed_m_per_s.empty();
+    return by_ground ? data.ground_speed_m_per_s : data.airspeed_m_per_s;
 }
 
 /// Reason why a flight has no bins; empty without one.
-std::string no_bins_reason(const flight::SelectedTracks& tracks) {
-    const auto& firmware = tracks.series().firmware;
+std::string no_bins_reason(const flight::FlightData& data) {
+    const auto& firmware = data.firmware;
     if (firmware == "rover") return "a rover: this model describes aircraft";
-    if (tracks["power_w"].empty()) return "its power was not measured";
-    if (tracks["altitude_m"].empty()) return "its altitude was not measured";
-    if (!tracks[speed_of(tracks)].empty()) return "";
+    if (data.power_w.empty()) return "its power was not measured";
+    if (data.altitude_m.empty()) return "its altitude was not measured";
+    if (!speed_of(data).empty()) return "";
     if (firmware == "rotorcraft") return "neither airspeed nor ground speed was measured";
     return "its airspeed was not measured; ground speed cannot replace it, as wind changes its cube";
 }
@@ -121,18 +113,17 @@ std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie) {
     return spans;
 }
 
-BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
-                        double bin_s) {
-    BinnedFlight motion{tracks.series().flight, {}, false, no_bins_reason(tracks)};
+BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight::PhaseSegment>& spans, double bin_s) {
+    BinnedFlight motion{data.flight, {}, false, no_bins_reason(data)};
     if (!motion.no_bins_reason.empty()) return motion;
-    motion.is_rotorcraft = tracks.series().firmware == "rotorcraft";
-    const auto payload_kg = constant_of(tracks, "payload_kg");
+    motion.is_rotorcraft = data.is_rotorcraft();
+    const auto payload_kg = first_value(data.payload_kg);
     motion.payload_known = payload_kg.has_value();
     motion.load.payload_kg = payload_kg.value_or(0.0);
-    const auto mass_kg = constant_of(tracks, "mass_kg");
-    const auto area_m2 = constant_of(tracks, "rotor_area_m2");
+    const auto mass_kg = first_value(data.mass_kg);
+    const auto area_m2 = first_value(data.rotor_area_m2);
     if (motion.is_rotorcraft && mass_kg && area_m2) motion.load.rotors = {*mass_kg, *area_m2};
-    MotionTracks of{tracks["power_w"], tracks[speed_of(tracks)], tracks["altitude_m"], tracks["roll_deg"], motion};
+    MotionTracks of{data.power_w, speed_of(data), data.altitude_m, data.roll_deg, motion};
     std::vector<double> speeds;
     for (const auto& span : spans) {
         const auto values = values_between(of.airspeed, span.start_s, span.end_s);

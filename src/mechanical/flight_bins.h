@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace flightwatt::flight {
-class SelectedTracks;
+struct FlightData;
 }
 
 namespace flightwatt::mechanical {
@@ -45,7 +45,7 @@ struct BinnedFlight {
 ///   descent         the same where it is below 0
 ///   hover, blade    means of the induced power and of V^2 of the airspeed's samples
 ///   turn            mean of tan^2 of the bank (at most 60 degrees: more is not a steady turn) times that of 1/V
-BinnedFlight bin_flight(const flight::SelectedTracks& tracks, const std::vector<flight::PhaseSegment>& spans,
+BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight::PhaseSegment>& spans,
                         double bin_s = default_bin_s);
 
 /// The spans of a sortie: its phases.

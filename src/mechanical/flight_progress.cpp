@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "flight/phase_statistics.h"
+#include "flight/select.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,9 @@ namespace {
 constexpr double max_log_gap_s = 60.0;
 
 /// The sortie in the log so far; std::nullopt before its lift-off.
-std::optional<flight::Sortie> sortie_of(const flight::SelectedTracks& known, std::size_t index,
+std::optional<flight::Sortie> sortie_of(const flight::FlightData& known, std::size_t index,
                                         const flight::SegmentationOptions& options) {
-    if (known["power_w"].time_s.size() < 2 || known["altitude_m"].empty()) return std::nullopt;
+    if (known.power_w.time_s.size() < 2 || known.altitude_m.empty()) return std::nullopt;
     auto phases = segment(known, options);
     if (index >= phases.sorties.size()) return std::nullopt;
     return std::move(phases.sorties[index]);
@@ -34,15 +35,6 @@ double first_sample_s(const flight::FlightSeries& series) {
 
 }  // namespace
 
-double last_time_s(const flight::FlightSeries& series) {
-    double end_s = -std::numeric_limits<double>::infinity();
-    for (const auto& track : series.tracks) {
-        const bool counts = track.name == "power_w" || track.name == "altitude_m";
-        if (counts && !track.empty()) end_s = std::max(end_s, track.time_s.back());
-    }
-    return end_s;
-}
-
 double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie,
                                const flight::SegmentationOptions& options) {
     constexpr double retry_s = 5.0;
@@ -51,7 +43,7 @@ double log_time_after_lift_off(const flight::FlightSeries& series, double since_
     const double last_s = last_time_s(series) + max_log_gap_s;
     while (time_s <= last_s) {
         const auto cut = truncate_series(series, time_s);
-        const auto found = sortie_of(flight::SelectedTracks(cut), sortie, options);
+        const auto found = sortie_of(select_tracks(cut), sortie, options);
         const double due_s =
             found && !found->phases.empty() ? found->phases.front().start.time_s + since_s : time_s + retry_s;
         if (due_s <= time_s + same_s) return time_s;
@@ -63,21 +55,19 @@ double log_time_after_lift_off(const flight::FlightSeries& series, double since_
 
 FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
                            const flight::SegmentationOptions& options) {
-    const auto known = truncate_series(series, until_s);
-    const flight::SelectedTracks tracks(known);
-    const auto sortie = sortie_of(tracks, sortie_index, options);
-    return progress_of(tracks, sortie ? &*sortie : nullptr, until_s, options);
+    const auto known = select_tracks(truncate_series(series, until_s));
+    const auto sortie = sortie_of(known, sortie_index, options);
+    return progress_of(known, sortie ? &*sortie : nullptr, until_s, options);
 }
 
-FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
+FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options) {
-    const auto& series = known.series();
-    if (const double end_s = last_time_s(series); std::isfinite(end_s) && until_s > end_s + max_log_gap_s) {
+    if (std::isfinite(known.last_s) && until_s > known.last_s + max_log_gap_s) {
         throw NoResultError(
-            fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", series.flight, end_s, until_s));
+            fmt::format("{}: the log ends at {:.1f} s, before {:.1f} s", known.flight, known.last_s, until_s));
     }
     const auto refuse = [&](std::string_view reason) {
-        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", series.flight, until_s, reason));
+        throw NoResultError(fmt::format("{}: at {:.1f} s of the log the aircraft {}", known.flight, until_s, reason));
     };
     if (sortie == nullptr || sortie->phases.empty()) refuse("has not taken off");
     const auto& first = sortie->phases.front();
@@ -97,14 +87,14 @@ FlightProgress progress_of(const flight::SelectedTracks& known, const flight::So
                              until_s);
 }
 
-FlightProgress measured_progress(const flight::SelectedTracks& known, const std::vector<flight::PhaseSegment>& spans,
+FlightProgress measured_progress(const flight::FlightData& known, const std::vector<flight::PhaseSegment>& spans,
                                  double until_s) {
     FlightProgress flown;
     flown.until_s = until_s;
     flown.lift_off_s = spans.front().start_s;
     flown.cruise_start_s = until_s;
     for (const auto& span : spans) {
-        const double energy_wh = integrated_energy_wh(known["power_w"], span.start_s, span.end_s);
+        const double energy_wh = integrated_energy_wh(known.power_w, span.start_s, span.end_s);
         flown.phases[span.phase] = {span.duration_s(), energy_wh};
         flown.energy_wh += energy_wh;
         if (span.phase != flight::Phase::cruise) continue;
@@ -127,8 +117,7 @@ FlightProgress progress_after_lift_off(const flight::FlightSeries& series, const
     std::vector<flight::PhaseSegment> spans;
     for (const auto& span : phase_spans(sortie))
         if (span.start_s < until_s) spans.push_back({span.phase, span.start_s, std::min(span.end_s, until_s)});
-    const auto known = truncate_series(series, until_s);
-    return measured_progress(flight::SelectedTracks(known), spans, until_s);
+    return measured_progress(select_tracks(truncate_series(series, until_s)), spans, until_s);
 }
 
 }  // namespace flightwatt::mechanical

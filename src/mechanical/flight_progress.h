@@ -1,8 +1,7 @@
 #pragma once
 
-#include "flight/flight_series.h"
+#include "flight/flight_data.h"
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "mechanical/flight_bins.h"
 
 #include <cstddef>
@@ -27,9 +26,6 @@ struct FlightProgress {
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 
-/// The last time of the log at which power or altitude was logged; -infinity without any.
-double last_time_s(const flight::FlightSeries& series);
-
 /// The log time `since_s` after a lift-off, which is found from the log up to that time alone, as a ground station
 /// would. `sortie` counts from 0. Throws NoResultError where the log ends more than 60 s before.
 double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0,
@@ -42,11 +38,11 @@ FlightProgress progress_at(const flight::FlightSeries& series, double until_s, s
                            const flight::SegmentationOptions& options = {});
 
 /// The same from a log that ends at that time, and its segmentation. nullptr: no sortie.
-FlightProgress progress_of(const flight::SelectedTracks& known, const flight::Sortie* sortie, double until_s,
+FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options = {});
 
 /// Energies, phases and motion of these spans, which end at `until_s` or before.
-FlightProgress measured_progress(const flight::SelectedTracks& known, const std::vector<flight::PhaseSegment>& spans,
+FlightProgress measured_progress(const flight::FlightData& known, const std::vector<flight::PhaseSegment>& spans,
                                  double until_s);
 
 /// The state `since_s` after the lift-off of a sortie whose phases are known, from the power and motion of the log up

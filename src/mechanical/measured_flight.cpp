@@ -1,7 +1,7 @@
 #include "mechanical/measured_flight.h"
 
 #include "base/piecewise_linear.h"
-#include "flight/selected_track.h"
+#include "flight/flight_data.h"
 
 #include <algorithm>
 #include <utility>
@@ -73,20 +73,19 @@ std::string sortie_name(const std::string& flight, std::size_t sortie) {
     return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
 }
 
-MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
-    const flight::SelectedTracks tracks(series);
-    const flight::PowerStatistics statistics_of_power(series);
+    const flight::PowerStatistics statistics_of_power(data);
     for (const auto& sortie : phases.sorties) {
         MeasuredFlight flight;
-        flight.samples.flight = sortie_name(series.flight, sortie.number);
+        flight.samples.flight = sortie_name(data.flight, sortie.number);
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
-            auto samples = samples_of(tracks["power_w"], span, flight.samples.flight);
+            auto samples = samples_of(data.power_w, span, flight.samples.flight);
             auto reason = exclusion_reason(span);
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
-            if (reason.empty()) flight.power[span.phase] = power_over(tracks["power_w"], span, statistics);
+            if (reason.empty()) flight.power[span.phase] = power_over(data.power_w, span, statistics);
             if (reason.empty()) reason = too_few_reason(samples, needed_samples);
             if (!reason.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(reason)});
@@ -97,7 +96,7 @@ MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight
             flight.samples.phases[span.phase] = std::move(samples);
         }
         if (!has_any_phase(flight)) continue;
-        flight.motion = bin_flight(tracks, phase_spans(sortie));
+        flight.motion = bin_flight(data, phase_spans(sortie));
         flight.motion.flight = flight.samples.flight;
         measured.flights.push_back(std::move(flight));
         measured.sorties.push_back(sortie.number - 1);
@@ -106,8 +105,8 @@ MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight
 }
 
 MeasuredFlights extract_flights(const flight::LoadedFlight& loaded, std::size_t needed_samples) {
-    if (!loaded.exclusion.empty()) return {{}, {{loaded.series.flight, std::nullopt, loaded.exclusion}}, {}};
-    return extract_flights(loaded.series, loaded.phases, needed_samples);
+    if (!loaded.exclusion.empty()) return {{}, {{loaded.data.flight, std::nullopt, loaded.exclusion}}, {}};
+    return extract_flights(loaded.data, loaded.phases, needed_samples);
 }
 
 void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples) {

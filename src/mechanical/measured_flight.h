@@ -54,7 +54,7 @@ struct MeasuredFlights {
     std::vector<std::size_t> sorties;  ///< of each flight, counted from 0
 };
 
-MeasuredFlights extract_flights(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases,
                                 std::size_t needed_samples);
 
 /// The same of a flight that may be excluded as a whole.

@@ -53,10 +53,10 @@ LocalPosition unit(const LocalPosition& of, double min_m) {
 /// Positions of a log, in degrees or on a plane, as metres.
 class Positions {
   public:
-    explicit Positions(const flight::SelectedTracks& tracks) {
-        const bool is_plane = !tracks["east_m"].empty() && !tracks["north_m"].empty();
-        east_ = &tracks[is_plane ? "east_m" : "longitude_deg"];
-        north_ = &tracks[is_plane ? "north_m" : "latitude_deg"];
+    explicit Positions(const flight::FlightData& data) {
+        const bool is_plane = !data.east_m.empty() && !data.north_m.empty();
+        east_ = is_plane ? &data.east_m : &data.longitude_deg;
+        north_ = is_plane ? &data.north_m : &data.latitude_deg;
         if (is_plane || empty()) return;
         metre_per_north_ = units::metre_per_degree;
         metre_per_east_ = units::metre_per_degree * std::cos(north_->value.front() / units::degree_per_rad);
@@ -135,11 +135,11 @@ PathGrid make_path_grid(const PathForecast& path) {
 
 /// Positions of the cruise at times `step_s` apart, from its start until a given time. Empty if the log has no positions,
 /// or none at the start of the cruise.
-std::vector<Observation> observations_of(const flight::SelectedTracks& tracks, double start_s, double until_s,
+std::vector<Observation> observations_of(const flight::FlightData& data, double start_s, double until_s,
                                          double step_s) {
     constexpr double min_m = 3.0;
     std::vector<Observation> all;
-    Positions positions(tracks);
+    Positions positions(data);
     if (positions.empty()) return all;
     std::optional<LocalPosition> origin;
     for (std::size_t k = 0; start_s + static_cast<double>(k) * step_s <= until_s; ++k) {
@@ -324,12 +324,12 @@ double PathFilter::nearest_position() const {
 
 }  // namespace
 
-std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::SelectedTracks& tracks,
-                                      double cruise_start_s, double until_s) {
+std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::FlightData& data, double cruise_start_s,
+                                      double until_s) {
     const double duration_s = path.flown().duration_s;
     if (!(duration_s > 0.0) || !(until_s > cruise_start_s)) return std::nullopt;
     const auto grid = make_path_grid(path);
-    const auto observations = observations_of(tracks, cruise_start_s, until_s, grid.step_s);
+    const auto observations = observations_of(data, cruise_start_s, until_s, grid.step_s);
     if (observations.empty()) return std::nullopt;
     PathFilter filter(grid);
     for (const auto& observation : observations) filter.add_observation(observation);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/selected_track.h"
+#include "flight/flight_data.h"
 #include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "path/cruise_path.h"
@@ -48,7 +48,7 @@ struct PathFix {
 /// Finds the position of a flight on its path, which begins where the cruise does, from the positions of the cruise up
 /// to a given time, by a forward filter over the path (docs/methods.md, Flight along a path). Later data are ignored.
 /// std::nullopt without positions, and for a path that takes no time.
-std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::SelectedTracks& tracks,
-                                      double cruise_start_s, double until_s);
+std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::FlightData& data, double cruise_start_s,
+                                      double until_s);
 
 }  // namespace flightwatt::path

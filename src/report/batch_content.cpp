@@ -6,7 +6,7 @@
 #include "batch/batch_run.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
+#include "flight/select.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace flightwatt::report {
 namespace {
 
 std::optional<double> start_clock_s(const ReportFlight& flight) {
-    const auto& logged_s = flight.series.start_clock_s;
+    const auto& logged_s = flight.data.start_clock_s;
     if (logged_s && *logged_s > 0.0) return logged_s;
     const auto start = flight::start_in_name(flight.name);
     if (!start) return std::nullopt;
@@ -37,10 +37,10 @@ std::string date_of(const std::optional<double>& clock_s) {
 using Position = boost::geometry::model::point<double, 2, boost::geometry::cs::geographic<boost::geometry::degree>>;
 
 /// Distance over ground between two times, by positions in metres or degrees.
-std::optional<double> flown_m(const flight::FlightSeries& series, double start_s, double end_s) {
-    const bool in_metres = !select_track(series, "east_m").empty();
-    const auto east = select_track(series, in_metres ? "east_m" : "longitude_deg");
-    const auto north = sample_selected_track(series, in_metres ? "north_m" : "latitude_deg", east.time_s);
+std::optional<double> flown_m(const flight::FlightData& data, double start_s, double end_s) {
+    const bool in_metres = !data.east_m.empty();
+    const auto& east = in_metres ? data.east_m : data.longitude_deg;
+    const auto north = resample(in_metres ? data.north_m : data.latitude_deg, east.time_s);
     if (north.empty()) return std::nullopt;
     double length_m = 0.0;
     for (std::size_t i = 1; i < east.time_s.size(); ++i) {
@@ -97,7 +97,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
             std::move(selection.flights.begin(), selection.flights.end(), std::back_inserter(content.measured));
             flight.unusable_power = batch::exclusion_reason(record, load);
             if (copy != nullptr) flight.unusable_power = batch::duplicate_reason(*copy);
-            flight.series = std::move(series);
+            flight.data = select_tracks(series);
             flight.phases = std::move(phases);
         }
         content.flights.push_back(std::move(flight));
@@ -110,7 +110,7 @@ std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& c
     auto flights = content.measured;
     for (const auto& logged : content.flights) {
         if (!logged.rejected.empty()) continue;
-        for (auto& measured : mechanical::extract_flights(logged.series, logged.phases, 1).flights) {
+        for (auto& measured : mechanical::extract_flights(logged.data, logged.phases, 1).flights) {
             const auto same = std::ranges::find_if(
                 flights, [&](const auto& flight) { return flight.samples.flight == measured.samples.flight; });
             if (same != flights.end()) same->power = std::move(measured.power);
@@ -123,16 +123,15 @@ std::string aircraft_mix(const BatchContent& content) {
     std::vector<flight::FlightAircraft> flown;
     for (const auto& flight : content.flights) {
         if (!flight.rejected.empty() || !flight.unusable_power.empty()) continue;
-        flown.push_back({flight.name, flight.series.aircraft_id, flight.series.aircraft_name});
+        flown.push_back({flight.name, flight.data.aircraft_id, flight.data.aircraft_name});
     }
     return content.fit ? "" : describe_mixed_aircraft(flown);
 }
 
 FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie) {
-    const auto& series = flight.series;
-    const flight::PowerStatistics power(series);
-    const auto altitude = select_track(series, "altitude_m");
-    const auto airspeed = select_track(series, "airspeed_m_per_s");
+    const auto& data = flight.data;
+    const flight::PowerStatistics power(data);
+    const auto& airspeed = data.airspeed_m_per_s;
     FlightSummary facts;
     facts.start_clock_s = start_clock_s(flight);
     facts.date = date_of(facts.start_clock_s);
@@ -146,8 +145,8 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
         const double start_s = flight.phases.sorties[s].phases.front().start.time_s;
         const double end_s = flight.phases.sorties[s].phases.back().end.time_s;
         facts.in_air_s += end_s - start_s;
-        add(facts.distance_m, flown_m(series, start_s, end_s));
-        if (const auto height_m = max_m(altitude, start_s, end_s))
+        add(facts.distance_m, flown_m(data, start_s, end_s));
+        if (const auto height_m = max_m(data.altitude_m, start_s, end_s))
             facts.height_m = std::max(*height_m, facts.height_m.value_or(*height_m));
         if (facts.air_distance_m)
             *facts.air_distance_m += flight::integrated(airspeed.time_s, airspeed.value, start_s, end_s);

@@ -17,7 +17,7 @@ struct ReportFlight {
     std::string name;
     std::string log;              ///< its path
     std::string rejected;         ///< the reason; empty if accepted
-    flight::FlightSeries series;  ///< of an accepted log
+    flight::FlightData data;      ///< of an accepted log
     flight::FlightPhases phases;  ///< with their edges
     std::vector<std::string> warnings;
     std::vector<std::string> exclusions;  ///< parts outside of the fit, with reasons

@@ -135,12 +135,12 @@ std::span<const TrendQuantity> trend_quantities() { return quantities; }
 FlightTrendData extract_trend_data(const ReportFlight& flight) {
     FlightTrendData flown;
     flown.name = flight.name;
-    flown.aircraft = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
-    flown.aircraft_id = flight.series.aircraft_id;
-    flown.aircraft_name = flight.series.aircraft_name;
+    flown.aircraft = flight::describe_aircraft(flight.data.aircraft_id, flight.data.aircraft_name);
+    flown.aircraft_id = flight.data.aircraft_id;
+    flown.aircraft_name = flight.data.aircraft_name;
     flown.facts = summarize_flight(flight);
     try {
-        flown.records = battery::discharge_records(flight.series).records;
+        flown.records = battery::discharge_records(flight.data).records;
     } catch (const InputError& error) {
         flown.no_record_reason = error.what();
     }

@@ -1,6 +1,6 @@
 #include "flight/load_flight.h"
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
+#include "helpers/selected_tracks.h"
 #include "log_passes.h"
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"
@@ -20,7 +20,7 @@ std::filesystem::path source_dir() { return FLIGHTWATT_SOURCE_DIR; }
 
 void segmentation_of_a_flight(benchmark::State& state) {
     const auto series = flight::read_flight(source_dir() / "logs" / "opterra_synthetic_01.data");
-    for (auto _ : state) benchmark::DoNotOptimize(flight::segment(series));
+    for (auto _ : state) benchmark::DoNotOptimize(flight::segment(select_tracks(series)));
     state.counters["samples"] = static_cast<double>(flight::power_track(series).time_s.size());
 }
 BENCHMARK(segmentation_of_a_flight)->Unit(benchmark::kMicrosecond);

@@ -48,7 +48,7 @@ FlightPhases two_phases() {
 
 std::string rejection_of(const flight::FlightSeries& series) {
     try {
-        flown_track(series, {});
+        flown_track(select_tracks(series), {});
     } catch (const InputError& error) {
         return error.what();
     }
@@ -72,11 +72,11 @@ TEST(FlownTrack, HasEachPositionWithAltitudePowerAndPhase) {
 TEST(FlownTrack, TakesTheLogsClockBeforeThatOfItsName) {
     auto series = places();
     series.flight = "20_07_05__10_26_44";
-    auto track = flown_track(series, {});
+    auto track = flown_track(select_tracks(series), {});
     EXPECT_EQ(track.clock, TrackClock::name);
     EXPECT_EQ(utc_text(track, 1.5), "2020-07-05T10:26:45.500Z");
     series.start_clock_s = 1593937604.26;
-    track = flown_track(series, {});
+    track = flown_track(select_tracks(series), {});
     EXPECT_EQ(track.clock, TrackClock::log);
     EXPECT_EQ(utc_text(track, 0.0), "2020-07-05T08:26:44.260Z");
     EXPECT_EQ(utc_text(track, 0.7399), "2020-07-05T08:26:45.000Z") << "rounded, not cut";
@@ -130,7 +130,7 @@ TEST(FlownTrack, CoversARealLog) {
     flight::LoadOptions options;
     options.power_required = false;
     const auto loaded = flight::load_flight(test::shared_dir() / "flights" / "20_07_03__12_17_45.data", options);
-    const auto track = flown_track(loaded.series, loaded.phases);
+    const auto track = flown_track(loaded.data, loaded.phases);
     EXPECT_EQ(track.clock, TrackClock::log);
     EXPECT_GT(track.points.size(), 1000U);
     for (const auto& point : track.points) {

@@ -3,8 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "flight/selected_track.h"
 #include "helpers/sample_logs.h"
+#include "helpers/selected_tracks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 const FlownTrack& sample_track() {
     static const auto track = [] {
         const auto loaded = flight::load_flight(test::sample(1));
-        return flown_track(loaded.series, loaded.phases);
+        return flown_track(loaded.data, loaded.phases);
     }();
     return track;
 }

@@ -51,7 +51,7 @@ bool is_here(const std::string& command) { return test::run_shell(command, test:
 /// A flight with all that a track can have, and three places without date, altitude and power.
 std::vector<FlownTrack> tracks() {
     const auto loaded = flight::load_flight(test::sample(1));
-    return {flown_track(loaded.series, loaded.phases),
+    return {flown_track(loaded.data, loaded.phases),
             {"bare <&>\x01", "", {{0.0, -70.5, -33.5}, {1.0, -70.6, -33.6}, {2.0, -70.7, -33.7}}}};
 }
 

@@ -60,7 +60,7 @@ TEST(AutopilotArchive, HasTheEdgesAndEnergiesThatWereSeen) {
         const auto power = power_track(series);
         EXPECT_NEAR(integrated_energy_wh(power, power.time_s.front(), power.time_s.back()), seen.energy_wh,
                     1e-4 * seen.energy_wh + 5e-5);
-        const auto phases = segment(series);
+        const auto phases = segment(select_tracks(series));
         ASSERT_EQ(phases.sorties.size(), 1U);
         const auto& spans = phases.sorties[0].phases;
         ASSERT_EQ(spans.size() + 1, seen.edges.size());
@@ -77,7 +77,7 @@ TEST(AutopilotArchive, SegmentsAMultirotorByItsPower) {
     const auto phases_of = [](const char* flight) {
         const auto series = read_flight(test::shared_dir() / "m100" / (std::string(flight) + ".csv"));
         std::string names;
-        for (const auto& sortie : segment(series).sorties)
+        for (const auto& sortie : segment(select_tracks(series)).sorties)
             for (const auto& span : sortie.phases)
                 names += std::string(to_string(span.phase)) + (span.complete ? " " : "* ");
         return names;

@@ -1,8 +1,8 @@
 #include "flight/column_map.h"
 
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>
@@ -57,11 +57,13 @@ TEST(ColumnMap, HasUnitsFactorsAndClocks) {
 TEST(ColumnMap, StatesThePayload) {
     const auto payload_of = [](const std::string& track) {
         const auto map = parse_column_map(small_map + "[[track]]\nname = \"payload_kg\"\n" + track, "map.toml");
-        return payload_kg(parse_mapped_csv("t,u,i,down,load\n2000,10,5,-300,\n3000,10,4,0,250\n", "f.csv", map));
+        return first_value(
+            select_tracks(parse_mapped_csv("t,u,i,down,load\n2000,10,5,-300,\n3000,10,4,0,250\n", "f.csv", map))
+                .payload_kg);
     };
     EXPECT_EQ(payload_of("value = 0.5\n"), 0.5);
     EXPECT_EQ(payload_of("column = \"load\"\nunit = \"g\"\n"), 0.25);
-    EXPECT_EQ(payload_kg({}), std::nullopt);
+    EXPECT_EQ(first_value({}), std::nullopt);
 }
 
 TEST(ColumnMap, MistakesAreNamed) {
@@ -112,7 +114,7 @@ TEST(ColumnMap, FlightsOfTheBenchmarkHaveTheirEnergy) {
         const auto series = read_candidates(FlightFile(test::shared_dir() / "m100" / name), std::nullopt).at(0);
         EXPECT_GT(power_track(series).time_s.size(), 500U);
         EXPECT_TRUE(series.skipped.empty());
-        flown += segment(series).sorties.size();
+        flown += segment(select_tracks(series)).sorties.size();
     }
     EXPECT_GT(flown, 0U);
 }

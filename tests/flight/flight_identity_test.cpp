@@ -2,9 +2,9 @@
 
 #include "base/atomic_file.h"
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "helpers/binary_frames.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "flight/flight_series.h"
 
-#include "flight/selected_track.h"
 #include "helpers/cut_logs.h"
+#include "helpers/selected_tracks.h"
 
 #include <limits>
 #include <random>

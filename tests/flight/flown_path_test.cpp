@@ -1,7 +1,7 @@
 #include "flight/flown_path.h"
 
-#include "flight/selected_track.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 
 #include <cmath>
 
@@ -39,7 +39,7 @@ FlightSeries eastward() {
 }
 
 TEST(FlownPath, HasAPlaceEveryThirtySeconds) {
-    const auto path = flown_path(eastward(), cruise(20.0, 200.0));
+    const auto path = flown_path(select_tracks(eastward()), cruise(20.0, 200.0));
     EXPECT_FALSE(path.is_geographic);
     ASSERT_EQ(path.waypoints.size(), 7U);
     EXPECT_DOUBLE_EQ(path.waypoints.front().east_m, 0.0);
@@ -54,7 +54,7 @@ TEST(FlownPath, HasAPlaceEveryThirtySeconds) {
     // From 80 to 110 s: two thirds at 12 m/s, a third at 14 m/s, by their cubes.
     EXPECT_NEAR(path.waypoints[3].airspeed_m_per_s, std::cbrt((2.0 * 1728.0 + 2744.0) / 3.0), 1e-3);
     // One that is short has its ends.
-    EXPECT_EQ(flown_path(eastward(), cruise(20.0, 30.0)).waypoints.size(), 2U);
+    EXPECT_EQ(flown_path(select_tracks(eastward()), cruise(20.0, 30.0)).waypoints.size(), 2U);
 }
 
 TEST(FlownPath, FollowsBends) {
@@ -70,7 +70,7 @@ TEST(FlownPath, FollowsBends) {
     }
     series.tracks[1] = track("east_m", times_s, east_m);
     series.tracks[2] = track("north_m", times_s, north_m);
-    const auto path = flown_path(series, cruise(0.0, 200.0));
+    const auto path = flown_path(select_tracks(series), cruise(0.0, 200.0));
     double length_m = 0.0;
     for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
         const auto& a = path.waypoints[i - 1];
@@ -86,7 +86,7 @@ TEST(FlownPath, IsInDegreesWhereTheLogIs) {
     auto series = eastward();
     series.tracks[1].name = "latitude_deg";
     series.tracks[2].name = "longitude_deg";
-    const auto path = flown_path(series, cruise(0.0, 60.0));
+    const auto path = flown_path(select_tracks(series), cruise(0.0, 60.0));
     EXPECT_TRUE(path.is_geographic);
     EXPECT_DOUBLE_EQ(path.waypoints.front().east_m, 1000.0);
 }
@@ -95,7 +95,10 @@ TEST(FlownPath, NeedsAirspeedAltitudeAndPosition) {
     for (const std::string missing : {"airspeed_m_per_s", "altitude_m", "north_m"}) {
         auto series = eastward();
         std::erase_if(series.tracks, [&](const Track& is) { return is.name == missing; });
-        EXPECT_EQ(test::rejected([&] { flown_path(series, cruise(0.0, 60.0)); }).find("e.csv: has no " + missing), 0U);
+        EXPECT_EQ(test::rejected([&] {
+                      flown_path(select_tracks(series), cruise(0.0, 60.0));
+                  }).find("e.csv: has no " + missing),
+                  0U);
     }
 }
 

@@ -30,7 +30,7 @@ std::vector<FoundPhase> found_phases(const FlightPhases& phases) {
 }
 
 void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
-    const auto phases = segment(read_flight(data));
+    const auto phases = segment(select_tracks(read_flight(data)));
     const auto found = found_phases(phases);
     ASSERT_EQ(found.size(), truth.rows.size());
     for (std::size_t i = 0; i < found.size(); ++i) {

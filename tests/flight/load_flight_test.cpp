@@ -3,12 +3,12 @@
 #include "base/atomic_file.h"
 #include "base/number.h"
 #include "flight/phases_file.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 #include "helpers/binary_frames.h"
 #include "helpers/flown_points.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <filesystem>
@@ -45,7 +45,7 @@ LoadOptions without_power() {
 }
 
 TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
-    const auto plain = segment(test::series_of(test::sortie(100)));
+    const auto plain = segment(select_tracks(test::series_of(test::sortie(100))));
     const auto flight = segment_and_check(unmeasured_flight(), without_power());
     ASSERT_EQ(flight.phases.sorties.size(), 1u);
     EXPECT_NEAR(flight.phases.sorties[0].start_s(), plain.sorties[0].start_s(), 1.0);
@@ -53,8 +53,8 @@ TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     EXPECT_EQ(flight.lacks_power, "no measured power (ENERGY.power is 0 throughout)");
     EXPECT_EQ(flight.exclusion, flight.lacks_power);
     EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is unknown")));
-    EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr("\n1,takeoff,"));
-    EXPECT_THAT(phases_csv(flight.series, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
+    EXPECT_THAT(phases_csv(flight.data, flight.phases), HasSubstr("\n1,takeoff,"));
+    EXPECT_THAT(phases_csv(flight.data, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
     EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }), HasSubstr("has no measured power"));
 }
 
@@ -64,7 +64,7 @@ TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
     EXPECT_TRUE(again == series);
     const auto flight = segment_and_check(series, without_power());
     const auto reread = segment_and_check(again, without_power());
-    EXPECT_EQ(phases_csv(reread.series, reread.phases), phases_csv(flight.series, flight.phases));
+    EXPECT_EQ(phases_csv(reread.data, reread.phases), phases_csv(flight.data, flight.phases));
     EXPECT_EQ(reread.warnings, flight.warnings);
 }
 
@@ -141,7 +141,7 @@ CardAndText stored_on_card(const std::filesystem::path& data, test::LinkVersion 
 
 std::string everything_of(const std::filesystem::path& log) {
     const auto flight = load_flight(log);
-    return fmt::format("{}\n{}\n{}", to_csv(flight.series), phases_csv(flight.series, flight.phases),
+    return fmt::format("{}\n{}\n{}", to_csv(flight.series), phases_csv(flight.data, flight.phases),
                        fmt::join(flight.warnings, "\n"));
 }
 

@@ -23,20 +23,24 @@ FlightSeries ramp() {
 TEST(PhaseStatistics, IntegratesLinearlyBetweenSamplesAndEdges) {
     const auto series = ramp();
     // The integral of 2 t from 10.5 to 90.25.
-    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(series, 10.5, 90.25)), 90.25 * 90.25 - 10.5 * 10.5, 1e-9);
-    const double whole = integrated_energy_wh(series, 0, 100);
-    EXPECT_NEAR(integrated_energy_wh(series, 0, 33.3) + integrated_energy_wh(series, 33.3, 100), whole, 1e-12);
-    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(series, 20.25, 20.5)), 0.25 * 2 * 20.375, 1e-9);
+    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(select_tracks(series).power_w, 10.5, 90.25)),
+                90.25 * 90.25 - 10.5 * 10.5, 1e-9);
+    const double whole = integrated_energy_wh(select_tracks(series).power_w, 0, 100);
+    EXPECT_NEAR(integrated_energy_wh(select_tracks(series).power_w, 0, 33.3) +
+                    integrated_energy_wh(select_tracks(series).power_w, 33.3, 100),
+                whole, 1e-12);
+    EXPECT_NEAR(units::joule_from_wh(integrated_energy_wh(select_tracks(series).power_w, 20.25, 20.5)),
+                0.25 * 2 * 20.375, 1e-9);
 }
 
 TEST(PhaseStatistics, CountsSamplesAndGaps) {
-    const auto statistics = PowerStatistics(ramp()).between(30, 60);
+    const auto statistics = PowerStatistics(select_tracks(ramp())).between(30, 60);
     EXPECT_EQ(statistics.samples, 22u);
     EXPECT_EQ(statistics.gaps, 1u);
     EXPECT_EQ(statistics.max_gap_s, 10.0);
     EXPECT_FALSE(statistics.counter_energy_wh.has_value());
     EXPECT_EQ(median_interval_s(power_track(ramp()).time_s), 1.0);
-    EXPECT_EQ(PowerStatistics(ramp()).between(43, 45).samples, 0u);
+    EXPECT_EQ(PowerStatistics(select_tracks(ramp())).between(43, 45).samples, 0u);
 }
 
 TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
@@ -49,10 +53,12 @@ TEST(PhaseStatistics, AgreesWithTheOnBoardCounterOfTheRealFlights) {
          {Flight{"20_07_03__12_17_45", 29.9}, Flight{"20_07_05__10_26_44", 18.9}, Flight{"20_07_10__06_53_03", 22.0}}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
-        const auto phases = segment(series).sorties.at(0).phases;
-        const auto cruise = PowerStatistics(series).between(phases[1].start.time_s, phases[1].end.time_s);
+        const auto phases = segment(select_tracks(series)).sorties.at(0).phases;
+        const auto cruise =
+            PowerStatistics(select_tracks(series)).between(phases[1].start.time_s, phases[1].end.time_s);
         EXPECT_NEAR(cruise.mean_power_w, cruise_power_w, 0.3);
-        const auto flight = PowerStatistics(series).between(phases[0].start.time_s, phases[2].end.time_s);
+        const auto flight =
+            PowerStatistics(select_tracks(series)).between(phases[0].start.time_s, phases[2].end.time_s);
         ASSERT_TRUE(flight.counter_energy_wh.has_value());
         EXPECT_NEAR(flight.energy_wh / *flight.counter_energy_wh, 1.0, 0.005);
     }

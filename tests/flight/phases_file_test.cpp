@@ -13,12 +13,12 @@ namespace {
 
 TEST(PhasesCsvReader, ReadsBackWhatWasWritten) {
     const auto series = read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    const auto written = phases_csv(series, segment(series));
+    const auto written = phases_csv(select_tracks(series), segment(select_tracks(series)));
     const auto file = test::scratch_dir() / "phases.csv";
     write_file_atomically(file, written);
     const auto phases = read_phases_csv(file);
     ASSERT_EQ(phases.sorties.size(), 1U);
-    EXPECT_EQ(phases_csv(series, phases), written);
+    EXPECT_EQ(phases_csv(select_tracks(series), phases), written);
 }
 
 TEST(PhasesCsv, HasTheTimeThatARotorcraftHovers) {
@@ -37,14 +37,14 @@ TEST(PhasesCsv, HasTheTimeThatARotorcraftHovers) {
     cruise.start.time_s = 10.0;
     cruise.end.time_s = 90.0;
     phases.sorties[0].phases.push_back(cruise);
-    EXPECT_TRUE(phases_csv(series, phases).ends_with(",\n")) << "unknown kind";
+    EXPECT_TRUE(phases_csv(select_tracks(series), phases).ends_with(",\n")) << "unknown kind";
     series.firmware = "rotorcraft";
-    EXPECT_TRUE(phases_csv(series, phases).ends_with(",19\n"));
+    EXPECT_TRUE(phases_csv(select_tracks(series), phases).ends_with(",19\n"));
 }
 
 std::string refusal(const std::string& from, const std::string& to) {
     const auto series = read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    auto text = phases_csv(series, segment(series));
+    auto text = phases_csv(select_tracks(series), segment(select_tracks(series)));
     text.replace(text.find(from), from.size(), to);
     const auto file = test::scratch_dir() / "phases.csv";
     write_file_atomically(file, text);

@@ -31,7 +31,7 @@ FlightSeries sound_flight() {
 
 TEST(PowerReport, FindsASoundRecordSound) {
     const auto series = sound_flight();
-    const auto report = check_power_record(series, segment(series));
+    const auto report = check_power_record(select_tracks(series), segment(select_tracks(series)));
     EXPECT_EQ(report.origin, CurrentOrigin::sensor);
     ASSERT_TRUE(report.idle.has_value());
     EXPECT_NEAR(report.idle->mean_a, synthetic::SyntheticSensors{}.idle_current_a, 0.001);
@@ -47,7 +47,7 @@ std::vector<std::string> faults_after(const std::function<void(test::SampleColum
     const auto series = sound_flight();
     auto columns = test::columns_of(series);
     spoil(columns);
-    return check_power_record(test::series_of(columns), segment(series)).power_faults;
+    return check_power_record(select_tracks(test::series_of(columns)), segment(select_tracks(series))).power_faults;
 }
 
 TEST(PowerReport, NamesWhatCannotBe) {
@@ -94,10 +94,10 @@ TEST(PowerReport, JudgesAgainstTheCounterInFlightAlone) {
 TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
     auto series = sound_flight();
     const auto before = series;
-    const auto report = check_power_record(series, segment(series));
-    correct_idle_offset(series, std::nullopt);
+    const auto report = check_power_record(select_tracks(series), segment(select_tracks(series)));
+    correct_idle_offset(series, select_tracks(series), std::nullopt);
     EXPECT_EQ(series, before);
-    correct_idle_offset(series, report.idle);
+    correct_idle_offset(series, select_tracks(series), report.idle);
     const auto measured = test::columns_of(before);
     const auto corrected = test::columns_of(series);
     ASSERT_EQ(corrected.time_s, measured.time_s);
@@ -114,7 +114,7 @@ TEST(PowerReport, ClosesOnTheRealFlights) {
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
-        const auto report = check_power_record(series, segment(series));
+        const auto report = check_power_record(select_tracks(series), segment(select_tracks(series)));
         EXPECT_EQ(report.origin, CurrentOrigin::sensor);
         EXPECT_THAT(report.power_faults, IsEmpty());
         ASSERT_TRUE(report.energy_closure_percent.has_value());

@@ -32,7 +32,7 @@ TEST(SegmentationClock, GivesTheSameEdgesToALogThatBeginsAWholeNumberOfStepsLate
             column->erase(column->begin(), column->begin() + samples);
         }
         std::vector<double> edges;
-        const auto phases = segment(test::series_of(later));
+        const auto phases = segment(select_tracks(test::series_of(later)));
         for (const auto& span : phases.sorties.at(0).phases) {
             edges.push_back(span.start.time_s);
             edges.push_back(span.end.time_s);
@@ -70,7 +70,7 @@ void expect_sortie(const Sortie& sortie, Edges edges, double tolerance_s = 3.0) 
 constexpr Edges plain{101, 127, 434, 469};
 
 TEST(Segmentation, FindsThePhasesOfAPlainFlight) {
-    const auto phases = segment(series_of(sortie(100)));
+    const auto phases = segment(select_tracks(series_of(sortie(100))));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
     EXPECT_NEAR(phases.sorties[0].height_m, 100.0, 1.0);
@@ -85,7 +85,7 @@ TEST(Segmentation, FindsNoSortieWithoutDuration) {
     columns.throttle_percent = {94.0, 94.0};
     auto series = test::series_of(columns);
     series.planned_ground_altitude_m = 185.0;
-    const auto phases = segment(series);
+    const auto phases = segment(select_tracks(series));
     EXPECT_TRUE(phases.sorties.empty());
     ASSERT_EQ(phases.ground_events.size(), 1u);
     EXPECT_THAT(phases.ground_events[0].what, HasSubstr("too short for a phase"));
@@ -93,13 +93,13 @@ TEST(Segmentation, FindsNoSortieWithoutDuration) {
 
 TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
     auto series = columns_of(sortie(100));
-    const auto before = segment(test::series_of(series));
+    const auto before = segment(select_tracks(test::series_of(series)));
     for (auto& t : series.time_s) t += 36000.0;
     for (auto& z : series.altitude_m) z = 5.0 * z + 1000.0;
     SegmentationOptions options;
     options.rest_height_m *= 5.0;
     options.flight_height_m *= 5.0;
-    const auto after = segment(test::series_of(series), options);
+    const auto after = segment(select_tracks(test::series_of(series)), options);
     ASSERT_EQ(after.sorties.size(), 1u);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(after.sorties[0].phases[i].start.time_s - 36000.0, before.sorties[0].phases[i].start.time_s, 0.6);
@@ -109,7 +109,7 @@ TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {
 TEST(Segmentation, IsNotFooledByAnEstimatorThatStartsAtZero) {
     std::vector<Point> points{{0, 0, 0}, {30, 0, 0}, {45, 185, 0}};
     for (const auto& p : sortie(100, 185)) points.push_back(p);
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
     // And if it finds its fix only just before lift-off, while the motor already runs:
@@ -117,7 +117,7 @@ TEST(Segmentation, IsNotFooledByAnEstimatorThatStartsAtZero) {
     for (const auto& p : sortie(100, 185)) {
         if (p.time_s > 97) points.push_back(p);
     }
-    const auto late = segment(series_of(points));
+    const auto late = segment(select_tracks(series_of(points)));
     ASSERT_EQ(late.sorties.size(), 1u);
     expect_sortie(late.sorties[0], plain, 5.0);
     EXPECT_EQ(late.warnings.size(), 1u);
@@ -133,7 +133,7 @@ TEST(Segmentation, KeepsDivesInCruise) {
                                        {400, 100, 60},
                                        {405, 35, 0},
                                        {420, 110, 100}});
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain, 4.0);
 }
@@ -148,7 +148,7 @@ TEST(Segmentation, NamesRunUpsAndIgnoresPowerAfterLanding) {
     points.push_back({560, 0, 0});
     auto series = columns_of(points);
     std::fill(series.power_w.end() - 5, series.power_w.end(), 80.0);
-    const auto phases = segment(test::series_of(series));
+    const auto phases = segment(select_tracks(test::series_of(series)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
     ASSERT_EQ(phases.ground_events.size(), 2u);
@@ -158,7 +158,7 @@ TEST(Segmentation, NamesRunUpsAndIgnoresPowerAfterLanding) {
 TEST(Segmentation, IsNotFooledByAThrottleBurstBeforeTouchdown) {
     auto points = sortie(100);
     points.insert(points.begin() + 8, {{462, 15, 0}, {463, 14, 50}, {467, 6, 50}, {468, 5, 0}});
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
@@ -166,7 +166,7 @@ TEST(Segmentation, IsNotFooledByAThrottleBurstBeforeTouchdown) {
 TEST(Segmentation, FindsEverySortieOfALog) {
     auto points = sortie(100);
     for (const auto& p : sortie(600, 2.0)) points.push_back(p);
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 2u);
     expect_sortie(phases.sorties[0], plain);
     expect_sortie(phases.sorties[1], {601, 627, 934, 969});
@@ -175,7 +175,7 @@ TEST(Segmentation, FindsEverySortieOfALog) {
 TEST(Segmentation, MarksAFlightThatTheLogEntersOrLeavesInTheAir) {
     auto entering = sortie(100);
     entering.erase(entering.begin(), entering.begin() + 5);
-    const auto in = segment(series_of(entering));
+    const auto in = segment(select_tracks(series_of(entering)));
     ASSERT_EQ(in.sorties.size(), 1u);
     ASSERT_EQ(in.sorties[0].phases.size(), 2u);
     EXPECT_EQ(in.sorties[0].phases[0].phase, Phase::cruise);
@@ -187,7 +187,7 @@ TEST(Segmentation, MarksAFlightThatTheLogEntersOrLeavesInTheAir) {
     auto leaving = sortie(100);
     leaving.erase(leaving.end() - 4, leaving.end());
     leaving.push_back({400, 100, 60});
-    const auto out = segment(series_of(leaving));
+    const auto out = segment(select_tracks(series_of(leaving)));
     ASSERT_EQ(out.sorties.size(), 1u);
     ASSERT_EQ(out.sorties[0].phases.size(), 2u);
     EXPECT_EQ(out.sorties[0].phases[0].phase, Phase::takeoff);
@@ -200,7 +200,7 @@ TEST(Segmentation, TakesALowCircleBeforeTheFinalApproachForLanding) {
     auto points = sortie(100);
     points.resize(7);
     points.insert(points.end(), {{431, 98, 20}, {480, 35, 30}, {540, 35, 40}, {560, 0, 0}, {620, 0, 0}});
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], {101, 127, 437, 558});
 }
@@ -209,7 +209,7 @@ TEST(Segmentation, TakesNoDiveAtTheEndOfTheLogForALanding) {
     auto points = sortie(100);
     points.resize(6);
     points.insert(points.end(), {{300, 100, 60}, {308, 40, 0}});
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     ASSERT_EQ(phases.sorties[0].phases.size(), 2u);
     EXPECT_EQ(phases.sorties[0].phases[1].phase, Phase::cruise);
@@ -220,7 +220,7 @@ TEST(Segmentation, NeedsLittleGroundAtTheEndsOfTheLog) {
     auto points = sortie(100);
     points.front() = {94, 0, 0};
     points.back() = {475, 0.2, 0};
-    const auto phases = segment(series_of(points));
+    const auto phases = segment(select_tracks(series_of(points)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
@@ -232,7 +232,7 @@ TEST(Segmentation, KnowsAnArmedIdleByTheSpeed) {
     for (std::size_t i = 0; i < series.time_s.size(); ++i) {
         if (series.time_s[i] > 100 && series.time_s[i] < 470) series.ground_speed_m_per_s[i] = 13.0;
     }
-    const auto phases = segment(test::series_of(series));
+    const auto phases = segment(select_tracks(test::series_of(series)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
@@ -250,7 +250,7 @@ TEST(Segmentation, WorksThroughGapsAndSpikes) {
     drop(200, 222);
     drop(300, 310);
     series.altitude_m[150] = 900.0;
-    const auto phases = segment(test::series_of(series));
+    const auto phases = segment(select_tracks(test::series_of(series)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     expect_sortie(phases.sorties[0], plain);
 }
@@ -259,7 +259,7 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
     const auto refusal = [](const std::vector<Point>& points) {
         const auto series = series_of(points);
         try {
-            require_sortie(series, segment(series), "x.data");
+            require_sortie(select_tracks(series), segment(select_tracks(series)), "x.data");
         } catch (const InputError& error) {
             return std::string(error.what()) + "; " + error.hint();
         }
@@ -275,13 +275,13 @@ TEST(Segmentation, SaysWhatItSawWhereNothingFlew) {
 TEST(Segmentation, RefusesWhatCannotBeSegmented) {
     auto series = columns_of(sortie(100));
     series.altitude_m.clear();
-    EXPECT_THROW(segment(test::series_of(series)), InputError);
+    EXPECT_THROW(segment(select_tracks(test::series_of(series))), InputError);
     auto slow = columns_of(sortie(100));
     for (auto& t : slow.time_s) t *= 1e9;
-    EXPECT_THROW(segment(test::series_of(slow)), InputError);
+    EXPECT_THROW(segment(select_tracks(test::series_of(slow))), InputError);
     SegmentationOptions options;
     options.cruise_fraction = 1.5;
-    EXPECT_THROW(segment(series_of(sortie(100)), options), UsageError);
+    EXPECT_THROW(segment(select_tracks(series_of(sortie(100))), options), UsageError);
 }
 
 struct RealFlight {
@@ -296,7 +296,7 @@ TEST(Segmentation, MatchesWhatWasReadOffPlotsOfTheRealFlights) {
                                       RealFlight{"20_07_10__06_53_03", {321, 356, 1066, 1100}}}) {
         SCOPED_TRACE(name);
         const auto series = read_flight(test::shared_dir() / "flights" / (std::string(name) + ".data"));
-        const auto phases = segment(series);
+        const auto phases = segment(select_tracks(series));
         ASSERT_EQ(phases.sorties.size(), 1u);
         expect_sortie(phases.sorties[0], edges, 5.0);
         const auto& lift_off = phases.sorties[0].phases[0].start;
@@ -355,7 +355,7 @@ TEST(Segmentation, IsATotalFunctionOfAnyCutsOrdersAndGaps) {
         std::erase_if(disturbed.tracks, [](const Track& track) { return track.empty(); });
         std::ranges::shuffle(disturbed.tracks, random);
         try {
-            const auto phases = segment(disturbed);
+            const auto phases = segment(select_tracks(disturbed));
             ++segmented;
             double last_s = -std::numeric_limits<double>::infinity();
             for (const auto& sortie : phases.sorties) {
@@ -367,7 +367,7 @@ TEST(Segmentation, IsATotalFunctionOfAnyCutsOrdersAndGaps) {
                     last_s = span.end.time_s;
                 }
             }
-            assess_flight(SelectedTracks(disturbed), phases);
+            assess_flight(select_tracks(disturbed), phases);
         } catch (const InputError& error) {
             ASSERT_THAT(error.what(), testing::HasSubstr("has no altitude")) << round;
         }

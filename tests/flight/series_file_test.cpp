@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "flight/power_check.h"
-#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 #include "helpers/cut_logs.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -139,7 +139,7 @@ TEST(SeriesFile, OfACorrectedSeriesIsNotCorrectedAgain) {
     const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
     const auto data = telemetry::read_data_file(log);
     auto series = test::all_series(data, test::configuration_of(log)).at(0);
-    correct_idle_offset(series, IdleCurrent{0.1, 0.01, 100});
+    correct_idle_offset(series, select_tracks(series), IdleCurrent{0.1, 0.01, 100});
     const auto again = parse_series_csv(to_csv(series), series.file);
     EXPECT_TRUE(again == series);
     EXPECT_EQ(warnings_of(again), warnings_of(series));

@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -151,7 +151,7 @@ using testing::ElementsAre;
 
 FlightSeries series_of(const std::string& text, const std::string& id = "20") {
     auto series = flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), id);
-    require_power(series);
+    require_power(select_tracks(series));
     return series;
 }
 
@@ -216,11 +216,11 @@ TEST(TelemetrySeries, AssumesTheUnitsThatPaparazziLeavesOutAndSaysSo) {
 
 TEST(TelemetrySeries, SaysWhyAMessageTellsNoPower) {
     const auto strange = with_power_device("name=\"current\" unit=\"furlong\"", "name=\"voltage\" unit=\"V\"");
-    EXPECT_EQ(no_power_reason(strange),
+    EXPECT_EQ(no_power_reason(select_tracks(strange)),
               "POWER_DEVICE has no power in W, nor current in A with voltage; the .log: POWER_DEVICE: current "
               "has the unknown unit 'furlong'");
     const auto renamed = with_power_device("name=\"current_2\"", "name=\"voltage\" unit=\"V\"");
-    EXPECT_THAT(no_power_reason(renamed), HasSubstr("POWER_DEVICE has no power in W"));
+    EXPECT_THAT(no_power_reason(select_tracks(renamed)), HasSubstr("POWER_DEVICE has no power in W"));
 }
 
 TEST(TelemetrySeries, FallsBackToVoltageTimesCurrent) {

@@ -5,10 +5,10 @@
 
 #include "base/error.h"
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/binary_definitions.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -73,8 +73,8 @@ void segment(std::string_view bytes, Framing framing, const Definitions& definit
                                            definitions.configuration, flight::flight_messages());
     for (const auto& id : flight::telemetry_senders(log)) {
         const auto series = flight::flight_series(log, id);
-        flight::require_power(series);
-        flight::segment(series);
+        flight::require_power(select_tracks(series));
+        flight::segment(select_tracks(series));
     }
 }
 

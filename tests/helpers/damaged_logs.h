@@ -46,7 +46,7 @@ inline flight::LoadedFlight examined(const std::string& text) {
 inline double energy_in_flight_wh(const flight::LoadedFlight& loaded) {
     double energy_wh = 0.0;
     for (const auto& sortie : loaded.phases.sorties)
-        energy_wh += integrated_energy_wh(loaded.series, sortie.start_s(), sortie.end_s());
+        energy_wh += integrated_energy_wh(loaded.data.power_w, sortie.start_s(), sortie.end_s());
     return energy_wh;
 }
 

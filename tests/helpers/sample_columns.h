@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flight/flight_series.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
+#include "helpers/selected_tracks.h"
 
 #include <string>
 #include <utility>

@@ -102,7 +102,7 @@ inline battery::Battery known_pack() {
 
 /// The one record of a log in which one pack was flown.
 inline battery::DischargeRecord discharge_record(const flight::FlightSeries& series) {
-    return battery::discharge_records(series).records.at(0);
+    return battery::discharge_records(select_tracks(series)).records.at(0);
 }
 
 }  // namespace flightwatt::test

@@ -1,8 +1,8 @@
 #include "live/live_flight.h"
 
-#include "flight/selected_track.h"
 #include "helpers/path_missions.h"
 #include "helpers/sample_logs.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/watched_logs.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "mechanical/flight_bins.h"
 
-#include "flight/selected_track.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ flight::FlightSeries some_series() {
 }
 
 BinnedFlight motion(const flight::FlightSeries& series, double start_s = 0.0, double end_s = 600.0) {
-    return bin_flight(flight::SelectedTracks(series), {{flight::Phase::cruise, start_s, end_s}});
+    return bin_flight(select_tracks(series), {{flight::Phase::cruise, start_s, end_s}});
 }
 
 TEST(FlightBins, AverageThePowerAndTheTerms) {

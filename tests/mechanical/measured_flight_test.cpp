@@ -103,7 +103,7 @@ TEST(MeasuredFlights, EndWithASampleAtTheirVeryEnd) {
     std::ranges::sort(columns.time_s);
     flight::FlightPhases phases;
     phases.sorties.emplace_back().phases = {span(flight::Phase::takeoff, 64.86, 92.7)};
-    const auto flights = extract_flights(test::series_of(columns), phases, needed).flights;
+    const auto flights = extract_flights(select_tracks(test::series_of(columns)), phases, needed).flights;
     EXPECT_EQ(flights.at(0).samples.phases[flight::Phase::takeoff].value().tau.back(), 1.0);
 }
 

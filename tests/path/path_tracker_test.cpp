@@ -1,5 +1,5 @@
-#include "flight/selected_track.h"
 #include "helpers/made_up_paths.h"
+#include "helpers/selected_tracks.h"
 #include "path/remaining_path.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double begin_s = 100.0;
 
 std::optional<PathFix> locate(const PathForecast& path, const flight::FlightSeries& series, double start_s,
                               double until_s) {
-    return locate_on_path(path, flight::SelectedTracks(series), start_s, until_s);
+    return locate_on_path(path, select_tracks(series), start_s, until_s);
 }
 
 /// A survey with circles in it, and two legs that are flown in both directions.

@@ -1,8 +1,8 @@
 #include "synthetic/synthetic_log.h"
 
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 
@@ -28,7 +28,7 @@ TEST(SyntheticLog, IsReadAndSegmentedAsItWasFlown) {
         const auto flight = flight_at(27.0);
         const auto series = read_back(make_synthetic_log(make_scenario(flight), {}, "x", "Made by a test.", seed));
         EXPECT_TRUE(warnings_of(series).empty());
-        const auto phases = segment(series);
+        const auto phases = segment(select_tracks(series));
         ASSERT_EQ(phases.sorties.size(), 1u) << "seed " << seed;
         ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
         for (const auto& span : phases.sorties[0].phases) {
@@ -59,7 +59,7 @@ TEST(SyntheticLog, HazardsDoNotFoolTheSegmentation) {
             SCOPED_TRACE(name + ", seed " + std::to_string(seed));
             const auto scenario = make_scenario(flight_at(27.0), name);
             const auto series = read_back(make_synthetic_log(scenario, {}, "x", "", seed));
-            const auto phases = segment(series);
+            const auto phases = segment(select_tracks(series));
             const auto truth = truth_of(scenario);
             ASSERT_EQ(phases.sorties.size(), truth.size());
             for (std::size_t s = 0; s < truth.size(); ++s) {

@@ -145,7 +145,7 @@ double resolve_log_time(const RequestedTime& time, const std::vector<flight::Fli
     if (time.log_time_s) return *time.log_time_s;
     if (!time.since_lift_off_s) {
         double last_s = 0.0;
-        for (const auto& series : candidates) last_s = std::max(last_s, mechanical::last_time_s(series));
+        for (const auto& series : candidates) last_s = std::max(last_s, last_time_s(series));
         return last_s;
     }
     std::optional<double> first_s;

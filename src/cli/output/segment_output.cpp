@@ -4,7 +4,6 @@
 #include "batch/flight_record.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <utility>
@@ -82,7 +81,7 @@ Fields<SortieOutput> record_fields(const SortieOutput*) {
 }
 
 std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
-    const flight::PowerStatistics power(*flight.series);
+    const flight::PowerStatistics power(*flight.data);
     std::vector<SortieOutput> all;
     for (const auto& sortie : flight.phases->sorties) {
         auto& output = all.emplace_back(SortieOutput{sortie, {}});
@@ -96,21 +95,21 @@ std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
 
 }  // namespace
 
-std::string describe_flight(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
+std::string describe_flight(const flight::FlightData& data, const flight::FlightPhases& phases) {
     const auto sorties = phases.sorties.size();
-    return fmt::format("{}: aircraft {}, {} sortie{}", series.flight,
-                       flight::describe_aircraft(series.aircraft_id, series.aircraft_name), sorties,
+    return fmt::format("{}: aircraft {}, {} sortie{}", data.flight,
+                       flight::describe_aircraft(data.aircraft_id, data.aircraft_name), sorties,
                        sorties == 1 ? "" : "s");
 }
 
-TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPhases& phases) {
+TextTable edges_table(const flight::FlightData& data, const flight::FlightPhases& phases) {
     TextTable table{
         {"sortie", "edge", "time s", "altitude m", "height %", "throttle %", "gap s", "mode", "block", "TAKEOFF s"},
         {}};
     const auto whole = [](const std::optional<int>& number) { return number ? fmt::format("{}", *number) : "-"; };
     const auto block_name = [&](const std::optional<int>& block) {
-        const auto found = block ? series.block_names.find(*block) : series.block_names.end();
-        return found == series.block_names.end() ? whole(block) : found->second;
+        const auto found = block ? data.block_names.find(*block) : data.block_names.end();
+        return found == data.block_names.end() ? whole(block) : found->second;
     };
     for (const auto& sortie : phases.sorties) {
         const auto add = [&](const char* name, const flight::PhaseEdge& edge) {
@@ -131,31 +130,36 @@ TextTable edges_table(const flight::FlightSeries& series, const flight::FlightPh
     return table;
 }
 
-std::string explanation(const flight::FlightSeries& series, const flight::FlightPhases& phases,
+std::string explanation(const flight::FlightData& data, const flight::FlightPhases& phases,
                         const flight::PowerReport& power, const Screen& screen) {
-    const ScreenTable shown{describe_flight(series, phases),
+    const ScreenTable shown{describe_flight(data, phases),
                             {"sortie", "edge", "time s", "altitude m", "height %", "throttle %"}};
-    std::string text = screen_text(edges_table(series, phases), screen, shown);
+    std::string text = screen_text(edges_table(data, phases), screen, shown);
     for (const auto& other : phases.ground_events)
         text += fmt::format("no flight from {:.0f} to {:.0f} s: {}\n", other.start_s, other.end_s, other.what);
+    for (const auto& [name, energy_wh, percent] : circuit_shares(data, phases))
+        text += fmt::format("circuit of {}: {:.3f} Wh, {:.0f} % of the energy\n", name, energy_wh, percent);
     if (!phases.motor_source.empty()) text += fmt::format("motor signal: {}\n", phases.motor_source);
-    return text + (power_track(series).empty()
+    return text + (data.power_w.empty()
                        ? "power: not measured\n"
-                       : values_text({{"power", power_track(series).source}}) + values_text(record_json(power)) +
+                       : values_text({{"power", data.power_w.source}}) + values_text(record_json(power)) +
                              fmt::format("gaps in flight: {}\n", power.gaps.size()));
 }
 
 Fields<SegmentedFlight> record_fields(const SegmentedFlight*) {
     using R = SegmentedFlight;
-    using S = flight::FlightSeries;
+    using S = flight::FlightData;
     using P = flight::FlightPhases;
-    const auto source = [](const S& series) { return power_track(series).source; };
-    return {field("flight", at(&R::series, &S::flight), "name of the flight"),
-            field("aircraft_id", at(&R::series, &S::aircraft_id), "id of the aircraft"),
-            field("aircraft_name", at(&R::series, &S::aircraft_name), "name of the aircraft"),
-            field("synthetic", at(&R::series, &S::aircraft_name, flight::is_synthetic), "made by `synthesize`"),
-            field("power_source", at(&R::series, source), "message of the power"),
+    const auto source = [](const S& data) { return data.power_w.source; };
+    return {field("flight", at(&R::data, &S::flight), "name of the flight"),
+            field("aircraft_id", at(&R::data, &S::aircraft_id), "id of the aircraft"),
+            field("aircraft_name", at(&R::data, &S::aircraft_name), "name of the aircraft"),
+            field("synthetic", at(&R::data, &S::aircraft_name, flight::is_synthetic), "made by `synthesize`"),
+            field("power_source", at(&R::data, source), "message of the power"),
             field("motor_evidence", at(&R::phases, &P::motor_source), "signal of the running motor"),
+            field(
+                "circuits", [](const R& r) { return circuit_shares(*r.data, *r.phases); },
+                "circuits of its batteries, the one with the most energy first"),
             field("sorties", sortie_outputs, "flights of the log"),
             field("rejected_activities", at(&R::phases, &P::ground_events), "the motor ran without a flight"),
             field("power", &R::power, "the power record"),

@@ -3,7 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/sources/device_sum.h"
+#include "flight/select/device_sum.h"
 
 #include <map>
 #include <utility>
@@ -98,6 +98,24 @@ std::vector<double> usual_power_w(const PowerRecord& record) {
     return usual_w;
 }
 
+/// Median length of the runs of equal values in flight.
+std::size_t update_samples(const PowerRecord& record) {
+    const auto& values = record.has_current() ? record.current_a : record.power_w;
+    std::vector<double> lengths;
+    for (const auto& run : runs_of_equal(values, 1))
+        if (record.is_flown(run.begin)) lengths.push_back(static_cast<double>(run.size()));
+    return lengths.empty() ? 1 : static_cast<std::size_t>(median_high(std::move(lengths)));
+}
+
+/// Whether the current stays at its highest value in three runs or more; a sensor that hangs does so once.
+bool is_clipped(const PowerRecord& record) {
+    constexpr std::ptrdiff_t min_runs = 3;
+    const auto runs = runs_of_equal(record.current_a, 2);
+    return std::ranges::count_if(runs, [&](const IndexSpan& run) {
+               return record.is_flown(run.begin) && record.current_a[run.begin] == record.max_a;
+           }) >= min_runs;
+}
+
 /// Sums and extremes over the samples in flight.
 void add_sums(PowerRecord& record) {
     std::vector<double> currents_a;
@@ -124,23 +142,23 @@ void add_sums(PowerRecord& record) {
 
 }  // namespace
 
-PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
-                              const SegmentationOptions& options) {
-    const auto& power = tracks["power_w"];
-    const auto on_clock = [&](const char* name) { return sample_selected_track(tracks, name, power.time_s); };
+PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases, const SegmentationOptions& options) {
+    const auto& power = data.power_w;
+    const auto on_clock = [&](const Track& track) { return resample(track, power.time_s); };
     PowerRecord record;
     record.time_s = power.time_s;
     record.power_w = power.value;
-    record.voltage_v = on_clock("voltage_v");
-    record.current_a = on_clock("current_a");
-    record.charge_ah.value = on_clock("charge_ah");
-    record.energy_wh.value = on_clock("energy_wh");
-    record.charge_ah.resolution = resolution_of(tracks["charge_ah"]);
-    record.energy_wh.resolution = resolution_of(tracks["energy_wh"]);
-    record.throttle_percent = on_clock("throttle_percent");
-    record.altitude_m = on_clock("altitude_m");
-    record.altitude_time_s = tracks["altitude_m"].time_s;
-    record.is_sum_of_circuits = is_sum_over_devices(power) && power.source.starts_with("POWER_DEVICE");
+    record.voltage_v = on_clock(data.voltage_v);
+    record.current_a = on_clock(data.current_a);
+    record.charge_ah.value = on_clock(data.charge_ah);
+    record.energy_wh.value = on_clock(data.energy_wh);
+    record.charge_ah.resolution = resolution_of(data.charge_ah);
+    record.energy_wh.resolution = resolution_of(data.energy_wh);
+    record.throttle_percent = on_clock(data.throttle_percent);
+    record.altitude_m = on_clock(data.altitude_m);
+    record.altitude_time_s = data.altitude_m.time_s;
+    record.is_sum_of_circuits =
+        data.circuits.size() > 1 || (is_sum_over_devices(power) && power.source.starts_with("POWER_DEVICE"));
     record.power_source = power.source;
     record.sorties = phases.sorties;
     const auto& time_s = record.time_s;
@@ -154,7 +172,7 @@ PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& 
     }
     close(record, record.power_w, record.energy_wh);
     close(record, record.current_a, record.charge_ah);
-    add_facts(record, resting_samples(record, phases.rests, tracks["armed"], options));
+    add_facts(record, resting_samples(record, phases.rests, data.armed, options));
     return record;
 }
 
@@ -181,10 +199,12 @@ void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
         record.step_s[i - 1] += half_s;
         record.step_s[i] += half_s;
     }
+    record.update_samples = update_samples(record);
     record.usual_w = usual_power_w(record);
     record.smooth_w = running_median<11>(record.power_w);
     record.smooth_percent = running_median<11>(record.throttle_percent);
     add_sums(record);
+    record.is_clipped = is_clipped(record);
 }
 
 double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s) {

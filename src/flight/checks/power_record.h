@@ -2,9 +2,9 @@
 
 #include "base/units.h"
 #include "flight/checks/runs.h"
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 #include "flight/power_check.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <array>
@@ -60,6 +60,8 @@ struct PowerRecord {
     std::vector<double> usual_w;         ///< median at the same throttle in flight; NaN if unknown
     std::vector<double> smooth_w;        ///< running median of the power over 11 samples
     std::vector<double> smooth_percent;  ///< running median of the throttle over 11 samples
+    std::size_t update_samples = 1;      ///< median number of samples for which the current (or power) is the same
+    bool is_clipped = false;             ///< the highest current is reached again and again: the sensor's limit
     double powerless_w = 0.0;            ///< with an open throttle, up to this the power counts as none
     double power_sum_w = 0.0;            ///< of the samples in flight, as all below
     double mean_a = 0.0;
@@ -79,8 +81,7 @@ struct PowerRecord {
     std::array<const OnBoardCounter*, 2> counters() const { return {&energy_wh, &charge_ah}; }
 };
 
-PowerRecord make_power_record(const SelectedTracks& tracks, const FlightPhases& phases,
-                              const SegmentationOptions& options);
+PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases, const SegmentationOptions& options);
 
 /// `resting`: indices of the samples at rest with the motor off (without a throttle: at rest outside of the sorties).
 void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting);

@@ -14,9 +14,12 @@ namespace flightwatt::flight {
 namespace {
 
 constexpr std::size_t stuck_samples = 30;  // equal values in a row
+constexpr std::size_t stuck_updates = 4;   // of a sensor slower than the log
 constexpr double faulty_rest_a = 5.0;
 constexpr double suspect_rest_a = 1.0;
-constexpr double suspect_rest_percent = 5.0;  // of the mean in flight
+constexpr double suspect_rest_percent = 5.0;   // of the mean in flight
+constexpr double negative_rest_a = 0.1;        // beyond the resolution of sensors
+constexpr double negative_rest_percent = 1.0;  // of the mean in flight
 constexpr double gliding_sink_m_per_s = 0.5;
 constexpr double usual_factor = 0.65;  // of the power at the same throttle, or of the samples around
 constexpr double usual_factor_without_throttle = 0.3;
@@ -46,7 +49,7 @@ struct PowerRule {
     Test applies = in_flight;  ///< selects the samples
     Test holds = nullptr;      ///< of these samples it finds runs
     Test continues = always;   ///< compares a sample with the one before it; a run ends where it is false
-    std::size_t min_run = 1;   ///< samples of a run
+    std::size_t min_run = 1;   ///< samples of a run; if above 1, also four updates of a sensor slower than the log
     double min_level_s = 0.0;  ///< duration of a run; if above 0, the aircraft must not sink
     std::size_t min_samples = 0;
     double min_s = 0.0;  ///< of all runs together
@@ -60,8 +63,10 @@ struct PowerRule {
     bool unless_previous = false;  ///< skipped if the previous rule has a finding
 };
 
+/// No load draws a negative current, so that less of it is the sensor's offset.
 bool is_loaded_at_rest(const PowerRecord& r) {
     if (!r.at_rest || std::ranges::none_of(r.in_flight, &IndexSpan::size)) return false;
+    if (r.at_rest->mean_a <= -negative_rest_a && r.rest_percent() >= negative_rest_percent) return true;
     return std::abs(r.at_rest->mean_a) >= suspect_rest_a || r.rest_percent() >= suspect_rest_percent;
 }
 
@@ -158,12 +163,15 @@ constexpr PowerRule rules[] = {
      .share = Share::time_or_energy,
      .warn_above = 0.04},
     {.text = "the current is stuck in {percent:.0f} % of the samples in flight: is its sensor damaged?",
-     .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] > 0.0; },
+     .holds =
+         [](const PowerRecord& r, std::size_t i) {
+             return r.has_current() && r.current_a[i] > 0.0 && !(r.is_clipped && r.current_a[i] == r.max_a);
+         },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.current_a[i] == r.current_a[i - 1]; },
      .min_run = stuck_samples,
      .warn_above = 0.04},
-    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: is its sensor "
-             "saturated?",
+    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: its sensor is "
+             "saturated, and the true energy is higher",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] == r.max_a; },
      .min_samples = stuck_samples,
      .warn_above = 0.05,
@@ -228,11 +236,12 @@ Found scan(const PowerRule& rule, const PowerRecord& record) {
     const auto count = record.time_s.size();
     Found found;
     for (std::size_t i = 0; i < count; ++i) found.applied += rule.applies(record, i) ? 1 : 0;
+    const auto min_run = rule.min_run > 1 ? std::max(rule.min_run, stuck_updates * record.update_samples) : 1;
     const auto joins = [&](std::size_t i) { return rule.applies(record, i) && rule.holds(record, i); };
     const auto continues = [&](std::size_t i) { return rule.continues(record, i); };
     for (const auto& run : runs_of({0, count}, joins, continues)) {
         const double run_s = record.time_s[run.end - 1] - record.time_s[run.begin];
-        if (run.size() < rule.min_run || run_s < rule.min_level_s) continue;
+        if (run.size() < min_run || run_s < rule.min_level_s) continue;
         if (rule.min_level_s > 0.0 && sinks(record, run)) continue;
         found.samples += run.size();
         for (auto i = run.begin; i < run.end; ++i) {

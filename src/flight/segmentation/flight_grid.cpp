@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/flight_data.h"
 #include "flight/segmentation/altitude_record.h"
-#include "flight/selected_track.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,21 +61,21 @@ std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percen
 }
 
 /// Number of points of the grid. Throws InputError for an implausible duration.
-std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, double end_s) {
+std::size_t size_until(const FlightData& data, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
     constexpr double max_s = 30.0 * 24.0 * units::seconds_per_hour;
     if (!(span_s <= max_s)) {
-        throw InputError({series.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
+        throw InputError({data.file}, fmt::format("lasts {:.4g} s, more than a month", span_s),
                          "are its times in seconds?");
     }
     return static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
 }
 
-void require_altitude(const FlightSeries& series, const Track& altitude) {
+void require_altitude(const FlightData& data, const Track& altitude) {
     if (!altitude.empty()) return;
-    const auto warnings = warnings_of(series);
+    const auto warnings = selection_warnings(data);
     throw InputError(
-        {series.file.empty() ? series.flight : series.file}, "has no altitude, so phases cannot be found",
+        {data.file.empty() ? data.flight : data.file}, "has no altitude, so phases cannot be found",
         fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",
                     warnings.empty() ? "" : "; ", fmt::join(warnings, "; ")));
 }
@@ -88,15 +88,14 @@ std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
     return times;
 }
 
-ResampledFlight make_grid(const SelectedTracks& tracks) {
-    const auto& series = tracks.series();
-    const auto& raw = tracks["altitude_m"];
-    require_altitude(series, raw);
+ResampledFlight make_grid(const FlightData& data) {
+    const auto& raw = data.altitude_m;
+    require_altitude(data, raw);
     ResampledFlight grid;
-    const auto& power = tracks["power_w"];
+    const auto& power = data.power_w;
     const auto& clock = power.empty() ? raw : power;
     grid.start_s = clock.time_s.front();
-    const auto time_s = grid.times_s({0, size_until(series, grid, clock.time_s.back())});
+    const auto time_s = grid.times_s({0, size_until(data, grid, clock.time_s.back())});
     auto altitude = clean_altitude(raw);  // on its own clock
     grid.unusable = std::move(altitude.unusable_reason);
     grid.warnings = std::move(altitude.warnings);
@@ -106,7 +105,7 @@ ResampledFlight make_grid(const SelectedTracks& tracks) {
     } else {
         add_altitude(grid, altitude, time_s);
     }
-    auto motor = motor_record(tracks, altitude.altitude);
+    auto motor = motor_record(data, altitude.altitude);
     grid.motor_indicator = motor.indicator;
     grid.motor_evidence = std::move(motor.evidence);
     grid.warnings.insert(grid.warnings.end(), motor.warnings.begin(), motor.warnings.end());
@@ -115,7 +114,7 @@ ResampledFlight make_grid(const SelectedTracks& tracks) {
         grid.min_motor_percent = *std::ranges::min_element(grid.motor_percent);
     }
     if (motor.indicator == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
-    const auto& speed = tracks["ground_speed_m_per_s"];
+    const auto& speed = data.ground_speed_m_per_s;
     if (!speed.empty()) grid.ground_speed_m_per_s = running_median<5>(resample(speed, time_s));
     return grid;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "flight/checks/runs.h"
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
 #include "flight/segmentation/motor_record.h"
-#include "flight/selected_track.h"
 
 #include <cstddef>
 #include <string>
@@ -38,7 +38,7 @@ struct ResampledFlight {
 
 /// Resamples the altitude, motor and speed over the time of the power samples, or without power of the altitude. Throws
 /// InputError if the series has no altitude.
-ResampledFlight make_grid(const SelectedTracks& tracks);
+ResampledFlight make_grid(const FlightData& data);
 
 /// The spans in which the aircraft is at rest: see SegmentationOptions.
 std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);

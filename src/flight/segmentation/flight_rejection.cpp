@@ -3,8 +3,8 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/segmentation/hover_record.h"
+#include "flight/select/outliers.h"
 #include "flight/series_file.h"
-#include "flight/sources/outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ double spread_of(std::span<const double> values) {
     return quantile(in_order, 0.95) - quantile(in_order, 0.05);
 }
 
-const std::string& altitude_source(const FlightCandidate& c) { return c.tracks["altitude_m"].source; }
+const std::string& altitude_source(const FlightCandidate& c) { return c.data.altitude_m.source; }
 
 /// The altitude of a rotorcraft is above the ground.
 bool is_above_ground(const FlightCandidate& c) { return altitude_source(c).starts_with("ROTORCRAFT_FP"); }
@@ -123,7 +123,7 @@ std::string stays_on_ground(const FlightCandidate& c) {
 
 /// Whether energy height is gained within a window of flying speed.
 bool flies_by_airspeed(const FlightCandidate& c) {
-    const auto& airspeed = c.tracks["airspeed_m_per_s"];
+    const auto& airspeed = c.data.airspeed_m_per_s;
     if (airspeed.empty()) return false;
     const auto speed = resample(airspeed, c.grid.times_s(c.activity.span));
     const auto altitude_m = part_of(c.grid.altitude_m, c.activity.span);
@@ -164,13 +164,12 @@ std::string climbs_too_fast(const FlightCandidate& c) {
 
 /// A GPS with a fix shows no motion, and no other altitude confirms the motion.
 std::string is_contradicted(const FlightCandidate& c) {
-    const auto& chosen = c.tracks["altitude_m"];
+    const auto& chosen = c.data.altitude_m;
     const auto own = altitudes_within(chosen, c.grid, c.activity.moving);
     const double own_m = own.empty() ? 0.0 : spread_of(own);
     if (own_m < c.options.flight_height_m) return "";
     std::string contradicts;
-    for (const auto& track : c.tracks.series().tracks) {
-        if (track.name != "altitude_m" || track.source == chosen.source) continue;
+    for (const auto& track : c.data.other_altitudes) {
         const auto other = altitudes_within(track, c.grid, c.activity.moving);
         const double other_m = other.empty() ? 0.0 : spread_of(other);
         if (other_m >= min_confirming_fraction * own_m) return "";
@@ -205,7 +204,7 @@ std::string moves_on_a_road(const FlightCandidate& c) {
     const auto& span = c.activity.span;
     if (!c.activity.ground_before_m || !c.activity.ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
     constexpr double max_interval_s = 5.0;  // rarer altitudes give no slope
-    const auto altitudes = altitudes_within(c.tracks["altitude_m"], c.grid, span).size();
+    const auto altitudes = altitudes_within(c.data.altitude_m, c.grid, span).size();
     if (static_cast<double>(altitudes) * max_interval_s < c.grid.time_s(span.end - 1) - c.grid.time_s(span.begin))
         return "";
     std::vector<double> way_m{0.0};
@@ -240,16 +239,15 @@ std::string only_drives(const FlightCandidate& c) {
 /// Measured ground speed and position show no flight while the altitude does. Not for a rotorcraft, which hovers; a
 /// fixed wing may fly against the wind, but not within the width of a field.
 std::string stands_still(const FlightCandidate& c) {
-    if (altitude_source(c) == plain_source || is_above_ground(c) || c.tracks.series().firmware == "rotorcraft")
-        return "";
+    if (altitude_source(c) == plain_source || is_above_ground(c) || c.data.firmware == "rotorcraft") return "";
     const auto time_s = c.grid.times_s(c.activity.span);
-    const auto is_dead = [&](const char* name) {
-        return changes_within(c.tracks[name], c.grid, c.activity.span) < min_changes;
+    const auto is_dead = [&](const Track& track) {
+        return changes_within(track, c.grid, c.activity.span) < min_changes;
     };
-    if (is_dead("ground_speed_m_per_s") || is_dead("east_m") || is_dead("north_m")) return "";
-    const auto east_m = resample(c.tracks["east_m"], time_s);
-    const auto north_m = resample(c.tracks["north_m"], time_s);
-    const double speed = fast_speed(when_high(resample(c.tracks["ground_speed_m_per_s"], time_s), c.heights));
+    if (is_dead(c.data.ground_speed_m_per_s) || is_dead(c.data.east_m) || is_dead(c.data.north_m)) return "";
+    const auto east_m = resample(c.data.east_m, time_s);
+    const auto north_m = resample(c.data.north_m, time_s);
+    const double speed = fast_speed(when_high(resample(c.data.ground_speed_m_per_s, time_s), c.heights));
     if (speed >= min_flight_m_per_s) return "";
     const auto steps = c.grid.steps(position_window_s);
     std::vector<double> by_position(time_s.size(), 0.0);  // speed over the window
@@ -257,7 +255,7 @@ std::string stands_still(const FlightCandidate& c) {
         by_position[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
     if (fast_speed(when_high(by_position, c.heights)) >= min_flight_m_per_s) return "";
     const double extent_m = std::max(spread_of(when_high(east_m, c.heights)), spread_of(when_high(north_m, c.heights)));
-    if (!c.tracks["airspeed_m_per_s"].empty() && extent_m >= standing_extent_m) return "";
+    if (!c.data.airspeed_m_per_s.empty() && extent_m >= standing_extent_m) return "";
     return fmt::format(
         "altitude shows a height of {:.0f} m, but the aircraft moves at {:.1f} m/s over ground, within {:.0f} m: not "
         "moved or carried",
@@ -282,9 +280,9 @@ bool FlightCandidate::is_motor_off() const {
     return grid.motor_indicator != MotorIndicator::unknown && max_motor_percent() < flight_motor_percent(grid, options);
 }
 
-std::string ground_vehicle_reason(const SelectedTracks& tracks) {
-    if (!tracks["rover_mode"].empty()) return "a ground vehicle: it sends ROVER_STATUS";
-    if (tracks.series().firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
+std::string ground_vehicle_reason(const FlightData& data) {
+    if (!data.rover_mode.empty()) return "a ground vehicle: it sends ROVER_STATUS";
+    if (data.firmware == "rover") return "a ground vehicle: its airframe's firmware is rover";
     return "";
 }
 

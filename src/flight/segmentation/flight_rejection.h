@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/phase_edges.h"
-#include "flight/selected_track.h"
 
 #include <string>
 
@@ -11,7 +11,7 @@ namespace flightwatt::flight {
 
 /// An activity that may be a flight, with its data.
 struct FlightCandidate {
-    const SelectedTracks& tracks;
+    const FlightData& data;
     const ResampledFlight& grid;
     const Activity& activity;
     const Heights& heights;
@@ -22,7 +22,7 @@ struct FlightCandidate {
 };
 
 /// Why the vehicle does not fly: "a ground vehicle: it sends ROVER_STATUS"; empty otherwise.
-std::string ground_vehicle_reason(const SelectedTracks& tracks);
+std::string ground_vehicle_reason(const FlightData& data);
 
 /// Why an activity is not a flight, by the rules of flight_rejection.cpp (docs/methods.md); empty if it is one.
 std::string no_flight_reason(const FlightCandidate& candidate);

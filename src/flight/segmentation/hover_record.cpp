@@ -66,12 +66,11 @@ bool takes(const Track& state, double value, double from_s, double to_s) {
     return false;
 }
 
-std::vector<IndexSpan> find_hovers(const SelectedTracks& tracks, const ResampledFlight& grid) {
-    const auto& armed = tracks["armed"];
-    const auto& landed = tracks["landed"];
-    if (tracks.series().firmware != "rotorcraft" || grid.motor_percent.empty()) return {};
-    if (grid.motor_indicator == MotorIndicator::power && usual_effort(tracks["current_a"].value) < min_lifting_a)
-        return {};
+std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight& grid) {
+    const auto& armed = data.armed;
+    const auto& landed = data.landed;
+    if (data.firmware != "rotorcraft" || grid.motor_percent.empty()) return {};
+    if (grid.motor_indicator == MotorIndicator::power && usual_effort(data.current_a.value) < min_lifting_a) return {};
     const auto effort = running_median<5>(grid.motor_percent);
     const double lifting = lifting_fraction * usual_effort(effort);
     if (!(lifting > 0.0)) return {};

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "flight/flight_data.h"
 #include "flight/segmentation/flight_grid.h"
 #include "flight/segmentation/phase_edges.h"
-#include "flight/selected_track.h"
 
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace flightwatt::flight {
 /// The spans in which a rotorcraft is carried by its motors, from the first to the last point at which they give 70 % of
 /// the usual effort in flight; empty for others, and without throttle and power. A landing or disarming in between
 /// separates two of them; if the log states neither, idle motors do.
-std::vector<IndexSpan> find_hovers(const SelectedTracks& tracks, const ResampledFlight& grid);
+std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight& grid);
 
 /// Whether a state takes a value after `from_s` and up to `to_s`.
 bool takes(const Track& state, double value, double from_s, double to_s);

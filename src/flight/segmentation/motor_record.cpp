@@ -4,11 +4,10 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
-#include "flight/selected_track.h"
+#include "flight/select/throttle.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 
@@ -28,11 +27,18 @@ struct PowerLevels {
     double idle_w;
     double running_w;
     double percent(double power_w) const { return units::percentage(power_w - idle_w, running_w - idle_w); }
+    double power_w(double percent) const { return std::lerp(idle_w, running_w, percent / units::percent_per_whole); }
 };
 
+Track percent_of(const Track& power, const PowerLevels& levels) {
+    Track percent{.time_s = power.time_s, .value = power.value};
+    for (double& value : percent.value) value = levels.percent(value);
+    return percent;
+}
+
 /// Idle and running power, of a rotorcraft by its current; std::nullopt if they do not differ enough.
-std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Track& altitude_m) {
-    const auto& power = tracks["power_w"];
+std::optional<PowerLevels> power_levels(const FlightData& data, const Track& altitude_m) {
+    const auto& power = data.power_w;
     constexpr std::size_t enough = 20;
     if (power.time_s.size() < enough) return std::nullopt;
     const double low_m = quantile_of(altitude_m.value, 0.02);
@@ -43,7 +49,7 @@ std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Trac
         if (at_m[i] <= ground_m) on_ground_w.push_back(power.value[i]);
     }
     const double running_w = quantile_of(power.value, 0.98);
-    if (tracks.series().firmware == "rotorcraft" && usual_effort(tracks["current_a"].value) >= min_lifting_a)
+    if (data.firmware == "rotorcraft" && usual_effort(data.current_a.value) >= min_lifting_a)
         return PowerLevels{0.0, running_w};
     if (on_ground_w.size() < enough / 2) return std::nullopt;
     const PowerLevels levels{quantile_of(std::move(on_ground_w), 0.25), running_w};
@@ -53,9 +59,9 @@ std::optional<PowerLevels> power_levels(const SelectedTracks& tracks, const Trac
 }
 
 /// The motor's speed in percent of its full speed; empty if it is not measured, constant or too low.
-MotorRecord record_of_motor_speed(const SelectedTracks& tracks) {
+MotorRecord record_of_motor_speed(const FlightData& data) {
     MotorRecord record;
-    auto speed = tracks["motor_speed_rpm"];
+    Track speed = data.motor_speed_rpm;
     if (speed.empty() || is_constant(speed)) return record;
     const double full_rpm = quantile_of(speed.value, 0.98);
     if (full_rpm < min_running_rpm) return record;
@@ -67,8 +73,8 @@ MotorRecord record_of_motor_speed(const SelectedTracks& tracks) {
 }
 
 /// The throttle on the clock of the power samples, or without power on its own.
-Track throttle_of(const SelectedTracks& tracks, const Track& power) {
-    auto throttle = tracks["throttle_percent"];
+Track throttle_of(const FlightData& data, const Track& power) {
+    Track throttle = data.throttle_percent;
     if (throttle.empty() || power.empty()) return throttle;
     throttle.value = resample(throttle, power.time_s);
     throttle.time_s = power.time_s;
@@ -90,67 +96,29 @@ std::size_t remove_glitches(Track& throttle, const Track& power, const PowerLeve
     return count;
 }
 
-/// Motor effort by other data than the throttle, on the throttle's clock.
-struct RunningEvidence {
-    std::vector<double> percent;
-    double idle_percent;
-    double flight_percent;
-};
-
-/// Replaces an idle throttle by the evidence where the aircraft moves, in runs in which the motor runs for half a
-/// minute in all (in manual mode some autopilots report no throttle). Returns a warning; `running` describes the mean
-/// percent.
-std::string follow_evidence(const SelectedTracks& tracks, Track& throttle, const RunningEvidence& evidence,
-                            double idle_percent, const std::function<std::string(double)>& running) {
-    const auto& time_s = throttle.time_s;
-    const auto speed_m_per_s = sample_selected_track(tracks, "ground_speed_m_per_s", time_s);
-    const auto moves = [&](std::size_t i) {
-        return speed_m_per_s.empty() || speed_m_per_s[i] > SegmentationOptions{}.rest_speed_m_per_s;
-    };
-    const auto runs = [&](std::size_t i) { return moves(i) && evidence.percent[i] > evidence.idle_percent; };
-    const auto idles = [&](std::size_t i) { return throttle.value[i] <= idle_percent; };
-    const double gap_s = gap_threshold_s(time_s);
-    double together_s = 0.0;
-    double mean_percent = 0.0;
-    std::optional<double> first_s;
-    for (const auto& run : runs_of({0, time_s.size()}, idles)) {
-        const double running_s = time_where(time_s, run, gap_s, runs);
-        if (running_s < contradicted_s) continue;
-        std::vector<double> running_percent;
-        for (auto i = run.begin; i < run.end; ++i)
-            if (runs(i)) running_percent.push_back(evidence.percent[i]);
-        if (mean(running_percent) < evidence.flight_percent) continue;
-        for (auto i = run.begin; i < run.end; ++i)
-            if (moves(i)) throttle.value[i] = evidence.percent[i];
-        if (!first_s) first_s = time_s[run.begin];
-        mean_percent = (mean_percent * together_s + mean(running_percent) * running_s) / (together_s + running_s);
-        together_s += running_s;
-    }
-    if (!first_s) return "";
-    return fmt::format("{} is idle while {}, for {:.0f} s in all, first from {:.0f} s: the latter is used there",
-                       throttle.source, running(mean_percent), together_s, *first_s);
-}
-
-/// Uses the power if its levels are known, else the motor's speed.
-std::string follow_motor(const SelectedTracks& tracks, Track& throttle, const std::optional<PowerLevels>& levels,
+/// Replaces an idle throttle by the power if its levels are known, else by the motor's speed. Returns a warning.
+std::string follow_motor(const FlightData& data, Track& throttle, const std::optional<PowerLevels>& levels,
                          double idle_percent) {
-    if (levels) {
-        RunningEvidence evidence{{}, idle_power_percent, flight_power_percent};
-        for (const double power_w : tracks["power_w"].value) evidence.percent.push_back(levels->percent(power_w));
-        return follow_evidence(tracks, throttle, evidence, idle_percent, [&](double percent) {
-            return fmt::format("the power is that of a running motor ({:.1f} W; idle {:.1f} W)",
-                               std::lerp(levels->idle_w, levels->running_w, percent / units::percent_per_whole),
-                               levels->idle_w);
-        });
-    }
-    const auto speed = record_of_motor_speed(tracks);
-    if (speed.percent.empty()) return "";
+    MotorRecord motor;
+    if (levels)
+        motor.percent = percent_of(data.power_w, *levels);
+    else
+        motor = record_of_motor_speed(data);
+    if (motor.percent.empty()) return "";
+    motor.percent = {.time_s = throttle.time_s, .value = resample(motor.percent, throttle.time_s)};
     const SegmentationOptions limits;
-    return follow_evidence(
-        tracks, throttle,
-        {resample(speed.percent, throttle.time_s), limits.idle_throttle_percent, limits.flight_throttle_percent},
-        idle_percent,
-        [&](double percent) { return fmt::format("the motor turns at {:.0f} % ({})", percent, speed.evidence); });
+    const auto replaced = replace_idle_throttle(
+        throttle, idle_percent,
+        levels ? MotorEvidence{motor.percent, idle_power_percent, flight_power_percent, data.ground_speed_m_per_s}
+               : MotorEvidence{motor.percent, limits.idle_throttle_percent, limits.flight_throttle_percent,
+                               data.ground_speed_m_per_s});
+    if (!replaced) return "";
+    const auto running = levels
+                             ? fmt::format("the power is that of a running motor ({:.1f} W; idle {:.1f} W)",
+                                           levels->power_w(replaced->mean_percent), levels->idle_w)
+                             : fmt::format("the motor turns at {:.0f} % ({})", replaced->mean_percent, motor.evidence);
+    return fmt::format("{} is idle while {}, for {:.0f} s in all, first from {:.0f} s: the latter is used there",
+                       throttle.source, running, replaced->together_s, replaced->first_s);
 }
 
 }  // namespace
@@ -163,11 +131,11 @@ double usual_effort(std::vector<double> values) {
     return high == values.end() ? half : *(high + (values.end() - high) / 2);
 }
 
-MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) {
+MotorRecord motor_record(const FlightData& data, const Track& altitude_m) {
     MotorRecord record;
-    const auto& power = tracks["power_w"];
-    auto throttle = throttle_of(tracks, power);
-    const auto levels = altitude_m.empty() ? std::nullopt : power_levels(tracks, altitude_m);
+    const auto& power = data.power_w;
+    auto throttle = throttle_of(data, power);
+    const auto levels = altitude_m.empty() ? std::nullopt : power_levels(data, altitude_m);
     const bool is_unused = is_constant(throttle);  // as of an autopilot without a throttle
     if (!throttle.empty() && !(is_unused && levels)) {
         record.indicator = MotorIndicator::throttle;
@@ -181,14 +149,14 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
                     fmt::format("{} samples of the throttle are removed: it is open, but the power idle", glitches));
             }
         }
-        auto contradiction = follow_motor(tracks, throttle, levels, idle_percent);
+        auto contradiction = follow_motor(data, throttle, levels, idle_percent);
         if (!contradiction.empty()) record.warnings.push_back(std::move(contradiction));
         record.percent = std::move(throttle);
         return record;
     }
     const std::string no_throttle = throttle.empty() ? "no throttle" : "the throttle never changes";
     if (!levels) {
-        record = record_of_motor_speed(tracks);
+        record = record_of_motor_speed(data);
         if (!record.percent.empty()) {
             record.warnings.push_back(
                 fmt::format("{} and no clear power: the motor runs by its speed ({})", no_throttle, record.evidence));
@@ -200,12 +168,11 @@ MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m) 
     }
     record.indicator = MotorIndicator::power;
     record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
-    const double above_w = std::lerp(levels->idle_w, levels->running_w, idle_power_percent / units::percent_per_whole);
-    if (tracks.series().firmware != "rotorcraft")  // in the air, these always draw much
+    const double above_w = levels->power_w(idle_power_percent);
+    if (data.firmware != "rotorcraft")  // in the air, these always draw much
         record.warnings.push_back(
             fmt::format("{}: the motor runs above {:.1f} W ({})", no_throttle, above_w, record.evidence));
-    record.percent.time_s = power.time_s;
-    for (const double power_w : power.value) record.percent.value.push_back(levels->percent(power_w));
+    record.percent = percent_of(power, *levels);
     return record;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "flight/flight_series.h"
-#include "flight/selected_track.h"
+#include "flight/flight_data.h"
 
 #include <string>
 #include <vector>
@@ -39,6 +38,6 @@ double usual_effort(std::vector<double> values);
 
 /// Derives the motor effort from throttle, power and motor speed; `altitude_m` (cleaned) identifies power on the
 /// ground.
-MotorRecord motor_record(const SelectedTracks& tracks, const Track& altitude_m);
+MotorRecord motor_record(const FlightData& data, const Track& altitude_m);
 
 }  // namespace flightwatt::flight

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <regex>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 /// Where ArduPilot's DataFlash logs have the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
@@ -29,51 +33,86 @@ double utc_of_gps(const std::vector<double>& row) {
     return row[0] > 0.0 ? utc_s - (utc_s > july_2015_s ? 1.0 : 0.0) - (utc_s > year_2017_s ? 1.0 : 0.0) : no_value;
 }
 
-// Up to 3.2.1 the whole numbers of CURR are hundredths, which the log does not state; later they are floats.
-const std::vector<FamilyTrack>& ardupilot_tracks() {
+/// A battery monitor: BAT with instances, or BAT2 and CUR2 of 3.4 to 4.0. Up to 3.2.1 the whole numbers of CURR are
+/// hundredths, which the log does not state; later they are floats.
+void add_monitor(const char* message, const char* device, std::vector<FamilyTrack>& tracks) {
+    constexpr auto mean = Merge::mean;
     constexpr auto latest = Merge::latest;
-    static const std::vector<FamilyTrack> tracks{
-        {"power_w", "BAT", {{"Volt", "V"}, {"Curr", "A"}}, Merge::mean, product},
-        {"power_w", "CURR", {{"Volt", "V", "0.01V"}, {"Curr", "A", "0.01A"}}, Merge::mean, product},
-        {"altitude_m", "BARO", {{"Alt", "m"}}},
-        {"altitude_m", "CTUN", {{"BAlt", "m"}}},
-        {"altitude_m", "CTUN", {{"BarAlt", "m"}}},
-        {"altitude_m", "POS", {{"Alt", "m"}}},
-        {"altitude_m", "GPS", {{"Alt", "m"}}},
-        {"voltage_v", "BAT", {{"Volt", "V"}}},
-        {"voltage_v", "CURR", {{"Volt", "V", "0.01V"}}},
-        {"current_a", "BAT", {{"Curr", "A"}}},
-        {"current_a", "CURR", {{"Curr", "A", "0.01A"}}},
-        {"charge_ah", "BAT", {{"CurrTot", "mAh"}}, latest},
-        {"charge_ah", "CURR", {{"CurrTot", "mAh"}}, latest},
-        {"energy_wh", "BAT", {{"EnrgTot", "Wh"}}, latest},
-        {"ground_speed_m_per_s", "GPS", {{"Spd", "m/s"}}},
-        {"airspeed_m_per_s", "ARSP", {{"Airspeed", "m/s"}}},
-        {"wind_east_m_per_s", "XKF2", {{"VWE", "m/s"}}},
-        {"wind_east_m_per_s", "NKF2", {{"VWE", "m/s"}}},
-        {"wind_north_m_per_s", "XKF2", {{"VWN", "m/s"}}},
-        {"wind_north_m_per_s", "NKF2", {{"VWN", "m/s"}}},
-        {"latitude_deg", "GPS", {{"Lat", "deg"}}, latest},
-        {"longitude_deg", "GPS", {{"Lng", "deg"}}, latest},
-        {"heading_deg", "ATT", {{"Yaw", "deg"}}, latest},
-        {"course_deg", "GPS", {{"GCrs", "deg"}}, latest},
-        {"climb_m_per_s", "CTUN", {{"CRt", "m/s", "cm/s"}}},
-        {"climb_m_per_s", "GPS", {{"VZ", "-1m/s"}}},
-        {"roll_deg", "ATT", {{"Roll", "deg"}}, latest},
-        {"throttle_percent", "CTUN", {{"ThO", "%"}}, Merge::mean, nullptr, "fixedwing"},
-        {"throttle_percent", "CTUN", {{"ThrOut", "%"}}, Merge::mean, nullptr, "fixedwing"},
-        {"throttle_percent", "CTUN", {{"ThO", "100%", "0.1%"}}, Merge::mean, nullptr, "rotorcraft"},
-        {"throttle_percent", "CTUN", {{"ThrOut", "100%", "0.1%"}}, Merge::mean, nullptr, "rotorcraft"},
-        {utc_track, "GPS", {{"GWk"}, {"GMS"}}, latest, utc_of_gps},
-        {utc_track, "GPS", {{"Week"}, {"TimeMS"}}, latest, utc_of_gps},
-        {"mode", "MODE", {{"ModeNum"}}, latest},
-        {"mode", "MODE", {{"Mode"}}, latest},
-        {"armed", "ARM", {{"ArmState"}}, latest},
-        {"armed", "STAT", {{"Armed"}}, latest},
-        {"armed", "EV", {{"Id"}}, latest, switched<10, 11>},
-        {"landed", "EV", {{"Id"}}, latest, switched<18, 28>},
-        {"landed", "STAT", {{"isFlying"}}, latest, [](const auto& flying) { return 1.0 - flying[0]; }},
-    };
+    const FamilySource voltage{"Volt", "V", "0.01V"};
+    const FamilySource current{"Curr", "A", "0.01A"};
+    tracks.insert(tracks.end(),
+                  {{"power_w", message, {voltage, current}, mean, product, nullptr, nullptr, device},
+                   {"voltage_v", message, {voltage}, mean, nullptr, nullptr, nullptr, device},
+                   {"current_a", message, {current}, mean, nullptr, nullptr, nullptr, device},
+                   {"charge_ah", message, {{"CurrTot", "mAh"}}, latest, nullptr, nullptr, nullptr, device},
+                   {"energy_wh", message, {{"EnrgTot", "Wh"}}, latest, nullptr, nullptr, nullptr, device}});
+}
+
+/// An ESC: ESC with instances, or ESC1 to ESC8 until 4.0.
+void add_esc(const char* message, const char* device, std::vector<FamilyTrack>& tracks) {
+    constexpr auto mean = Merge::mean;
+    const FamilySource voltage{"Volt", "V"};
+    const FamilySource current{"Curr", "A"};
+    tracks.insert(tracks.end(), {{"power_w", message, {voltage, current}, mean, product, nullptr, "ESC", device},
+                                 {"voltage_v", message, {voltage}, mean, nullptr, nullptr, "ESC.Volt", device},
+                                 {"current_a", message, {current}, mean, nullptr, nullptr, "ESC.Curr", device}});
+}
+
+std::vector<FamilyTrack> electrical_tracks() {
+    std::vector<FamilyTrack> tracks;
+    for (const auto& [message, device] :
+         {std::pair<const char*, const char*>{"BAT", nullptr}, {"CURR", nullptr}, {"BAT2", "1"}, {"CUR2", "1"}})
+        add_monitor(message, device, tracks);
+    add_esc("ESC", nullptr, tracks);
+    for (const auto& [message, device] : {std::pair<const char*, const char*>{"ESC1", "1"},
+                                          {"ESC2", "2"},
+                                          {"ESC3", "3"},
+                                          {"ESC4", "4"},
+                                          {"ESC5", "5"},
+                                          {"ESC6", "6"},
+                                          {"ESC7", "7"},
+                                          {"ESC8", "8"}})
+        add_esc(message, device, tracks);
+    return tracks;
+}
+
+std::vector<FamilyTrack> ardupilot_tracks() {
+    constexpr auto latest = Merge::latest;
+    auto tracks = electrical_tracks();
+    tracks.insert(tracks.end(),
+                  {
+                      {"altitude_m", "BARO", {{"Alt", "m"}}},
+                      {"altitude_m", "CTUN", {{"BAlt", "m"}}},
+                      {"altitude_m", "CTUN", {{"BarAlt", "m"}}},
+                      {"altitude_m", "POS", {{"Alt", "m"}}},
+                      {"altitude_m", "GPS", {{"Alt", "m"}}},
+                      {"ground_speed_m_per_s", "GPS", {{"Spd", "m/s"}}},
+                      {"airspeed_m_per_s", "ARSP", {{"Airspeed", "m/s"}}},
+                      {"wind_east_m_per_s", "XKF2", {{"VWE", "m/s"}}},
+                      {"wind_east_m_per_s", "NKF2", {{"VWE", "m/s"}}},
+                      {"wind_north_m_per_s", "XKF2", {{"VWN", "m/s"}}},
+                      {"wind_north_m_per_s", "NKF2", {{"VWN", "m/s"}}},
+                      {"latitude_deg", "GPS", {{"Lat", "deg"}}, latest},
+                      {"longitude_deg", "GPS", {{"Lng", "deg"}}, latest},
+                      {"heading_deg", "ATT", {{"Yaw", "deg"}}, latest},
+                      {"course_deg", "GPS", {{"GCrs", "deg"}}, latest},
+                      {"climb_m_per_s", "CTUN", {{"CRt", "m/s", "cm/s"}}},
+                      {"climb_m_per_s", "GPS", {{"VZ", "-1m/s"}}},
+                      {"roll_deg", "ATT", {{"Roll", "deg"}}, latest},
+                      {"throttle_percent", "CTUN", {{"ThO", "%"}}, Merge::mean, nullptr, "fixedwing"},
+                      {"throttle_percent", "CTUN", {{"ThrOut", "%"}}, Merge::mean, nullptr, "fixedwing"},
+                      {"throttle_percent", "CTUN", {{"ThO", "100%", "0.1%"}}, Merge::mean, nullptr, "rotorcraft"},
+                      {"throttle_percent", "CTUN", {{"ThrOut", "100%", "0.1%"}}, Merge::mean, nullptr, "rotorcraft"},
+                      {utc_track, "GPS", {{"GWk"}, {"GMS"}}, latest, utc_of_gps},
+                      {utc_track, "GPS", {{"Week"}, {"TimeMS"}}, latest, utc_of_gps},
+                      {"mode", "MODE", {{"ModeNum"}}, latest},
+                      {"mode", "MODE", {{"Mode"}}, latest},
+                      {"armed", "ARM", {{"ArmState"}}, latest},
+                      {"armed", "STAT", {{"Armed"}}, latest},
+                      {"armed", "EV", {{"Id"}}, latest, switched<10, 11>},
+                      {"landed", "EV", {{"Id"}}, latest, switched<18, 28>},
+                      {"landed", "STAT", {{"isFlying"}}, latest, [](const auto& flying) { return 1.0 - flying[0]; }},
+                  });
     return tracks;
 }
 
@@ -87,12 +126,28 @@ std::string found_in_texts(const telemetry::LogFacts& facts, const char* pattern
     return "";
 }
 
+/// The kinds of the monitors by BATT_MONITOR, BATT2_MONITOR ...
+std::map<std::string, std::string> monitor_kinds(const std::map<std::string, double>& parameters) {
+    constexpr int escs = 9;
+    constexpr int sum = 10;
+    constexpr int max_monitors = 9;
+    std::map<std::string, std::string> kinds;
+    for (int number = 1; number <= max_monitors; ++number) {
+        const auto found = parameters.find(number == 1 ? "BATT_MONITOR" : fmt::format("BATT{}_MONITOR", number));
+        if (found == parameters.end()) continue;
+        if (found->second == escs) kinds[fmt::format("{}", number - 1)] = escs_monitor;
+        if (found->second == sum) kinds[fmt::format("{}", number - 1)] = sum_monitor;
+    }
+    return kinds;
+}
+
 void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series) {
     // "APM:Copter V3.4.4", "ArduCopter V3.6.8"; the serial number of the board is "00310019 3138510E 35363631"
     const auto vehicle = found_in_texts(log.facts, "(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
     series.aircraft_id = found_in_texts(log.facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
     std::ranges::replace(series.aircraft_id, ' ', '-');
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
+    series.monitor_kinds = monitor_kinds(log.facts.parameters);
     const bool is_simulated =
         !found_in_texts(log.facts, "(SITL)").empty() ||
         std::ranges::any_of(log.messages, [](const auto& of) { return of.name == "SIM" || of.name == "SIM2"; });
@@ -109,6 +164,7 @@ const LogFamily& ardupilot_family() {
     static const LogFamily family{ardupilot_tracks(),
                                   {{"BAT", "Instance"},
                                    {"BAT", "Inst"},
+                                   {"ESC", "Instance"},
                                    {"BARO", "I"},
                                    {"GPS", "I", "Status", 3.0},
                                    {"ARSP", "I"},

@@ -1,7 +1,7 @@
 #include "flight/sources/derived_tracks.h"
 
 #include "base/units.h"
-#include "flight/sources/device_sum.h"
+#include "flight/select/device_sum.h"
 
 #include <algorithm>
 #include <cmath>

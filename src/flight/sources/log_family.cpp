@@ -98,7 +98,7 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
         }
         const auto instance = instances.numbered ? fmt::format("{}", number) : "";
         auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
-        if (is_of_battery(of.track)) track.device = instance;
+        if (is_of_battery(of.track)) track.device = of.device != nullptr ? of.device : instance;
         tracks.push_back(std::move(track));
     }
 }

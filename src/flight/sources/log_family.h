@@ -29,6 +29,7 @@ struct FamilyTrack {
     Compute compute = nullptr;       ///< default: the value of the only source
     const char* firmware = nullptr;  ///< of these vehicles only
     const char* source = nullptr;    ///< its name; default: of the first field
+    const char* device = nullptr;    ///< of a message that is of one device
 };
 
 /// A rule for the rows of a message: several instances, or rows that do not count.

@@ -3,7 +3,7 @@
 #include "base/units.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
+#include "flight/select.h"
 #include "live/state/moment.h"
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
@@ -18,15 +18,6 @@
 #include <fmt/ranges.h>
 
 namespace flightwatt::live {
-namespace {
-
-std::optional<double> last_value(const flight::SelectedTracks& tracks, const char* name) {
-    const auto& track = tracks[name];
-    return track.empty() ? std::nullopt : std::optional(track.value.back());
-}
-
-}  // namespace
-
 /// Results that cannot be computed are reported in the state, whatever the called functions throw.
 class LiveFlight::Impl {
   public:
@@ -105,11 +96,11 @@ class LiveFlight::Impl {
         if (schedule_) schedule_->reset();
     }
 
-    void update_flight(const flight::SelectedTracks& tracks, LiveState& state);
-    void update_battery(const flight::SelectedTracks& tracks, LiveState& state);
-    void check_record(const flight::SelectedTracks& tracks, const LiveState& state);
-    std::string no_prediction_reason(const flight::FlightSeries& series, const LiveState& state) const;
-    void predict(const flight::SelectedTracks& tracks, LiveState& state);
+    void update_flight(const flight::FlightData& data, LiveState& state);
+    void update_battery(const flight::FlightData& data, LiveState& state);
+    void check_record(const flight::FlightData& data, const LiveState& state);
+    std::string no_prediction_reason(const flight::FlightData& data, const LiveState& state) const;
+    void predict(const flight::FlightData& data, LiveState& state);
     void predict_battery(LiveState& state, Diagnostics& remarks) const;
     void forecast(LiveState& state) const;
     void decide(LiveState& state);
@@ -158,17 +149,17 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     state.time_s = clock_s().value_or(0.0);
     state.time_since_message_s = silent_s + arrival_s_ - heard_s_;
     // The series ends with the last power or altitude, as for predict.
-    if (const double now_s = mechanical::last_time_s(series); std::isfinite(now_s))
+    if (const double now_s = last_time_s(series); std::isfinite(now_s))
         series = truncate_series(std::move(series), now_s);
-    const flight::SelectedTracks tracks(series);
-    state.aircraft_id = series.aircraft_id;
-    state.aircraft_name = series.aircraft_name;
+    const auto data = select_tracks(series);
+    state.aircraft_id = data.aircraft_id;
+    state.aircraft_name = data.aircraft_name;
     state.other_senders = {messages_of_.begin(), messages_of_.end()};
     state.other_senders.erase(aircraft_);
-    update_flight(tracks, state);
-    update_battery(tracks, state);
-    check_record(tracks, state);
-    predict(tracks, state);
+    update_flight(data, state);
+    update_battery(data, state);
+    check_record(data, state);
+    predict(data, state);
     try {
         forecast(state);
     } catch (const std::exception& error) {
@@ -184,74 +175,72 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     return state;
 }
 
-void LiveFlight::Impl::update_flight(const flight::SelectedTracks& tracks, LiveState& state) {
+void LiveFlight::Impl::update_flight(const flight::FlightData& data, LiveState& state) {
     phases_ = {};
     segmentation_error_.clear();
     try {
-        if (!tracks["altitude_m"].empty()) phases_ = segment(tracks);
+        if (!data.altitude_m.empty()) phases_ = segment(data);
     } catch (const std::exception& error) {
         segmentation_error_ = error.what();
     }
     state.sortie = sorties_before_ + phases_.sorties.size();
-    state.power_w = last_value(tracks, "power_w");
-    state.voltage_v = last_value(tracks, "voltage_v");
-    state.current_a = last_value(tracks, "current_a");
-    state.altitude_m = last_value(tracks, "altitude_m");
+    state.power_w = last_value(data.power_w);
+    state.voltage_v = last_value(data.voltage_v);
+    state.current_a = last_value(data.current_a);
+    state.altitude_m = last_value(data.altitude_m);
     if (phases_.sorties.empty()) return;
     store_.keep_only(aircraft_);
     const auto& sortie = phases_.sorties.back();
-    const double now_s = mechanical::last_time_s(tracks.series());
-    update_flight_times(sortie, tracks["altitude_m"], now_s,
+    const double now_s = data.last_s;
+    update_flight_times(sortie, data.altitude_m, now_s,
                         ended_ || state.time_since_message_s >= options_.silence_threshold_s, state);
     if (!state.power_w) return;
-    state.energy_wh = integrated_energy_wh(tracks["power_w"], sortie.start_s(), state.landed ? sortie.end_s() : now_s);
+    state.energy_wh = integrated_energy_wh(data.power_w, sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
-void LiveFlight::Impl::update_battery(const flight::SelectedTracks& tracks, LiveState& state) {
+void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState& state) {
     record_.reset();
     if (!input_ || !input_->battery) return;
-    state.battery = estimate_soc(*input_, carried_percent_, tracks, record_);
+    state.battery = estimate_soc(*input_, carried_percent_, data, record_);
     const bool is_counted = state.began_in_air && !record_ && restarts_ == 0;
     if (is_counted && input_->initial_soc_percent)
-        estimate_soc_from_counter(tracks["charge_ah"], input_->battery->capacity_ah, *input_->initial_soc_percent,
+        estimate_soc_from_counter(data.charge_ah, input_->battery->capacity_ah, *input_->initial_soc_percent,
                                   *state.battery);
 }
 
 /// Why there can be no prediction now; empty: there can.
-std::string LiveFlight::Impl::no_prediction_reason(const flight::FlightSeries& series, const LiveState& state) const {
+std::string LiveFlight::Impl::no_prediction_reason(const flight::FlightData& data, const LiveState& state) const {
     if (!input_) return "a model: give --model or --mission";
     if (!input_->no_prediction_reason.empty()) return input_->no_prediction_reason;
     if (!rejected_.empty()) return "a valid power record: " + rejected_;
-    if (state.landed)
-        return fmt::format("at {:.1f} s of the log the aircraft has landed", mechanical::last_time_s(series));
+    if (state.landed) return fmt::format("at {:.1f} s of the log the aircraft has landed", data.last_s);
     if (!state.power_w) {
-        const auto reason = no_power_reason(series);
+        const auto reason = no_power_reason(data);
         return reason.empty() ? "telemetry of power" : "measured power: " + reason;
     }
-    return without_flight_name(segmentation_error_, series.flight);
+    return without_flight_name(segmentation_error_, data.flight);
 }
 
-void LiveFlight::Impl::predict(const flight::SelectedTracks& tracks, LiveState& state) {
-    state.no_prediction_reason = no_prediction_reason(tracks.series(), state);
+void LiveFlight::Impl::predict(const flight::FlightData& data, LiveState& state) {
+    state.no_prediction_reason = no_prediction_reason(data, state);
     if (!state.no_prediction_reason.empty()) return;
     Diagnostics remarks;
     try {
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
-        const auto flown = state.began_in_air
-                               ? airborne_progress(tracks, *sortie)
-                               : mechanical::progress_of(tracks, sortie, mechanical::last_time_s(tracks.series()));
+        const auto flown =
+            state.began_in_air ? airborne_progress(data, *sortie) : mechanical::progress_of(data, sortie, data.last_s);
         state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
         const bool has_cruise_start = !state.began_in_air || sortie->phases.front().phase == flight::Phase::takeoff;
         std::optional<path::PathFix> fix;
         if (input_->path && !input_->remaining_s && has_cruise_start)
-            fix = locate_on_path(*input_->path, tracks, flown.cruise_start_s, flown.until_s);
+            fix = locate_on_path(*input_->path, data, flown.cruise_start_s, flown.until_s);
         state.prediction = state.began_in_air ? predict_airborne_start(*input_, flown, has_cruise_start, fix, remarks)
                                               : predict_energy(*input_, flown, fix, remarks);
         predict_battery(state, remarks);
         state.expected_power_w = remaining_power(*state.prediction).front().power_w;
     } catch (const std::exception& error) {
         state.prediction.reset();
-        state.no_prediction_reason = without_flight_name(error.what(), tracks.series().flight);
+        state.no_prediction_reason = without_flight_name(error.what(), data.flight);
     }
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
@@ -307,20 +296,20 @@ void LiveFlight::Impl::decide(LiveState& state) {
 }
 
 /// Every 30 s, as it takes as long as the rest of an update; at once after a gap.
-void LiveFlight::Impl::check_record(const flight::SelectedTracks& tracks, const LiveState& state) {
+void LiveFlight::Impl::check_record(const flight::FlightData& data, const LiveState& state) {
     constexpr double interval_s = 30.0;
     constexpr double gap_s = 10.0;
     if (updated_s_ && std::abs(state.time_s - *updated_s_) > gap_s) checked_s_.reset();
     updated_s_ = state.time_s;
     if (checked_s_ && state.time_s < *checked_s_ + interval_s && !state.landed && !ended_) return;
     checked_s_ = state.time_s;
-    if (tracks.series().tracks.empty()) return;
+    if (track_sources(data).empty()) return;
     if (!segmentation_error_.empty()) {
         warnings_ = {segmentation_error_};
         return;
     }
     try {
-        auto assessment = assess_flight(tracks, phases_);
+        auto assessment = assess_flight(data, phases_);
         rejected_ = fmt::format("{}", fmt::join(assessment.power.power_faults, ", "));
         warnings_ = std::move(assessment.warnings);
     } catch (const std::exception& error) {

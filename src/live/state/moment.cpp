@@ -4,7 +4,6 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 #include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
 
@@ -166,8 +165,8 @@ std::string without_flight_name(const std::string& text, const std::string& flig
     return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
-mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& tracks, const flight::Sortie& sortie) {
-    const double until_s = mechanical::last_time_s(tracks.series());
+mechanical::FlightProgress airborne_progress(const flight::FlightData& data, const flight::Sortie& sortie) {
+    const double until_s = data.last_s;
     const auto& first = sortie.phases.front();
     const double cruise_start_s = first.phase == flight::Phase::takeoff ? first.end.time_s : sortie.start_s();
     const double hold_s = flight::SegmentationOptions{}.hold_s;
@@ -177,9 +176,9 @@ mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& track
                         "{:.0f} s",
                         until_s, hold_s));
     }
-    auto flown = mechanical::measured_progress(tracks, {{flight::Phase::cruise, cruise_start_s, until_s}}, until_s);
+    auto flown = mechanical::measured_progress(data, {{flight::Phase::cruise, cruise_start_s, until_s}}, until_s);
     flown.lift_off_s = sortie.start_s();
-    flown.energy_wh += integrated_energy_wh(tracks["power_w"], flown.lift_off_s, cruise_start_s);
+    flown.energy_wh += integrated_energy_wh(data.power_w, flown.lift_off_s, cruise_start_s);
     return flown;
 }
 

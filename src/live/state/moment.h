@@ -26,7 +26,7 @@ std::string without_flight_name(const std::string& text, const std::string& flig
 /// The state of charge by the charge drawn and by voltage, of a series that ends now. `carried_percent`: known state of
 /// charge at its start. Without a usable record (at rest, or started in flight) only by voltage.
 LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
-                         const flight::SelectedTracks& tracks, std::optional<battery::DischargeRecord>& record);
+                         const flight::FlightData& data, std::optional<battery::DischargeRecord>& record);
 
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
                              double initial_soc_percent, double time_s);
@@ -39,7 +39,7 @@ std::optional<double> probability_below_reserve(const PredictionInput& input, co
 
 /// Progress of a flight whose telemetry begins in the air, since its first message. Throws NoResultError before 30 s of
 /// cruise were received.
-mechanical::FlightProgress airborne_progress(const flight::SelectedTracks& tracks, const flight::Sortie& sortie);
+mechanical::FlightProgress airborne_progress(const flight::FlightData& data, const flight::Sortie& sortie);
 
 /// Predicts a flight whose telemetry begins in the air. Unless the start of the cruise was received or the remaining
 /// time is given, that is uniform between 0 and the mission's cruise less the part received. Throws as predict_energy.

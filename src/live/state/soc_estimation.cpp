@@ -1,6 +1,5 @@
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/selected_track.h"
 #include "live/state/moment.h"
 
 #include <algorithm>
@@ -39,11 +38,10 @@ void compare_voltage(const battery::Battery& battery, const battery::DischargeRe
 }
 
 /// Without a record: by voltage and current of the last minute, with the RC pair at rest.
-void estimate_soc_from_voltage(const battery::Battery& battery, const flight::SelectedTracks& tracks,
-                               LiveBattery& result) {
-    const auto& voltage = tracks["voltage_v"];
+void estimate_soc_from_voltage(const battery::Battery& battery, const flight::FlightData& data, LiveBattery& result) {
+    const auto& voltage = data.voltage_v;
     if (!battery.thevenin || voltage.empty()) return;
-    const auto& current = tracks["current_a"];
+    const auto& current = data.current_a;
     std::vector<double> rest_v;
     for (std::size_t i = voltage.time_s.size(); i-- > 0 && voltage.time_s[i] >= voltage.time_s.back() - watched_s;) {
         const double current_a = current.empty() ? 0.0 : value_at(current, voltage.time_s[i]);
@@ -97,11 +95,11 @@ std::optional<double> soc_at(const battery::Battery& battery, const battery::Dis
 }
 
 LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
-                         const flight::SelectedTracks& tracks, std::optional<battery::DischargeRecord>& record) {
+                         const flight::FlightData& data, std::optional<battery::DischargeRecord>& record) {
     const auto& battery = input.battery.value();
     LiveBattery result;
     try {
-        record = battery::discharge_records(tracks).records.back();
+        record = battery::discharge_records(data).records.back();
         set_initial(input, carried_percent, *record, result);
         result.drawn_ah = record->charge_ah.back();
         result.state = state_after(battery, *record, result.initial_soc_percent);
@@ -110,7 +108,7 @@ LiveBattery estimate_soc(const PredictionInput& input, const std::optional<doubl
         result.soc_percent = result.state->soc_percent;
         compare_voltage(battery, *record, result);
     } catch (const std::exception&) {  // no record yet, or more charge drawn than available
-        estimate_soc_from_voltage(battery, tracks, result);
+        estimate_soc_from_voltage(battery, data, result);
     }
     return result;
 }

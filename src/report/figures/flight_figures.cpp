@@ -1,7 +1,5 @@
 #include "report/figures/flight_figures.h"
 
-#include "flight/selected_track.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -104,8 +102,7 @@ std::string caption_of(bool has_model) {
 std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
     std::vector<NamedEdge> edges;
     if (flight.phases.sorties.empty()) return edges;
-    auto clock = power_track(flight.series);
-    if (clock.empty()) clock = select_track(flight.series, "altitude_m");
+    const auto& clock = flight.data.power_w.empty() ? flight.data.altitude_m : flight.data.power_w;
     for (const auto& sortie : flight.phases.sorties) {
         for (std::size_t i = 0; i < sortie.phases.size(); ++i) {
             const auto& span = sortie.phases[i];
@@ -124,9 +121,8 @@ std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
 }
 
 Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalModel* model, const std::string& id) {
-    const flight::SelectedTracks tracks(flight.series);
-    const auto& power = tracks["power_w"];
-    const auto& time_s = power.time_s;
+    const auto& data = flight.data;
+    const auto& time_s = data.power_w.time_s;
     const auto templates = figure_template("flight")["vconcat"];  // for other tracks, and for power
     auto panels = VegaJson::array();
     auto views = VegaJson::array();
@@ -136,15 +132,15 @@ Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalMod
         values["name"] = views.back();
         panels.push_back(filled(std::move(panel), values));
     };
-    const auto add_track = [&](const std::string& column, std::string_view title, int height) {
-        const auto& track = tracks[column];
+    const auto add_track = [&](const flight::Track& track, std::string_view title, int height) {
         if (track.empty()) return;
+        const auto& column = track.name;
         const auto rows = channel_rows(time_s, resample(track, time_s), column);
         add_panel(templates[0], {{"rows", rows.json()}, {"column", column}, {"title", title}, {"height", height}});
     };
-    add_track("altitude_m", "altitude [m]", 110);
-    add_track("throttle_percent", "throttle [%]", 80);
-    add_panel(templates[1], {{"rows", power_rows(flight, power, model).json()}});
+    add_track(data.altitude_m, "altitude [m]", 110);
+    add_track(data.throttle_percent, "throttle [%]", 80);
+    add_panel(templates[1], {{"rows", power_rows(flight, data.power_w, model).json()}});
     auto figure =
         new_figure("flight", id, caption_of(model != nullptr),
                    fmt::format("Altitude, throttle and power of flight {} over time, with its phases.", flight.name),

@@ -63,7 +63,7 @@ std::map<std::string, std::vector<FlightSummary>> by_aircraft(Flights flights) {
     std::map<std::string, std::vector<FlightSummary>> of_aircraft;
     for (const auto& flight : flights)
         if (flight.rejected.empty())
-            of_aircraft[flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name)].push_back(
+            of_aircraft[flight::describe_aircraft(flight.data.aircraft_id, flight.data.aircraft_name)].push_back(
                 summarize_flight(flight));
     return of_aircraft;
 }
@@ -190,7 +190,7 @@ std::vector<std::string> aircraft_lines(Flights flights) {
 
 bool any_synthetic(Flights flights) {
     return std::ranges::any_of(flights, [](const ReportFlight& flight) {
-        return flight.rejected.empty() && flight::is_synthetic(flight.series.aircraft_name);
+        return flight.rejected.empty() && flight::is_synthetic(flight.data.aircraft_name);
     });
 }
 

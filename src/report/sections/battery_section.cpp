@@ -26,7 +26,7 @@ void add_record(ReportBattery& battery, const ReportFlight& flight) {
     if (!flight.rejected.empty()) return exclude("rejected: " + flight.rejected);
     if (!flight.unusable_power.empty()) return exclude(flight.unusable_power);
     try {
-        auto found = battery::discharge_records(flight.series);
+        auto found = battery::discharge_records(flight.data);
         for (const auto& note : found.notes) battery.notes.push_back(fmt::format("{}: {}", flight.name, note));
         std::ranges::move(found.records, std::back_inserter(battery.records));
     } catch (const InputError& error) {
@@ -108,7 +108,7 @@ ReportBattery identify_with(std::span<const ReportFlight> flights, const battery
 const battery::Battery* find_pack(std::span<const mission::MissionVariant> missions,
                                   std::span<const ReportFlight> flights) {
     const auto is_known = [&](const std::string& name) {
-        return std::ranges::any_of(flights, [&](const auto& flight) { return flight.series.flight == name; });
+        return std::ranges::any_of(flights, [&](const auto& flight) { return flight.data.flight == name; });
     };
     for (const auto& mission : missions) {
         const auto& setup = setup_of(mission);

@@ -2,7 +2,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"
-#include "flight/selected_track.h"
+#include "flight/phase_statistics.h"
 #include "report/batch_content.h"
 #include "report/figures/flight_figures.h"
 #include "report/html.h"
@@ -87,7 +87,7 @@ std::string edges_html(const ReportFlight& flight) {
 /// "20 Faulty, 2020-07-03 12:17, 23 min 55 s in the air, 19.52 km, up to 118 m".
 std::string summary_of(const ReportFlight& flight) {
     const auto facts = summarize_flight(flight);
-    auto text = flight::describe_aircraft(flight.series.aircraft_id, flight.series.aircraft_name);
+    auto text = flight::describe_aircraft(flight.data.aircraft_id, flight.data.aircraft_name);
     if (!facts.date.empty()) text += ", " + facts.date;
     text += ", " + duration_text(facts.in_air_s) + " in the air";
     if (facts.distance_m) text += fmt::format(", {:.2f} km", *facts.distance_m / 1000.0);
@@ -115,7 +115,11 @@ Section contents_of(const ReportFlight& flight, const mechanical::MechanicalMode
     };
     const auto log = std::filesystem::path(flight.log).filename().string();  // the page goes to others
     section.html += paragraph("From " + log, "soft") + list_html(flight.warnings, "warning");
-    const bool has_power = !power_track(flight.series).empty();
+    if (const auto shares = circuit_shares(flight.data, flight.phases); shares.size() > 1)
+        for (const auto& [name, energy_wh, percent] : shares)
+            section.html +=
+                paragraph(fmt::format("Circuit of {}: {:.2f} Wh, {:.0f} %", name, energy_wh, percent), "soft");
+    const bool has_power = !flight.data.power_w.empty();
     if (has_power) add(flight_figure(flight, model, part.id + "-power"));
     section.html +=
         "<details class=\"more\"><summary>How the phases were found</summary>\n" + edges_html(flight) + "</details>\n";

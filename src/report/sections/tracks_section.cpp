@@ -1,6 +1,5 @@
 #include "base/text.h"
 #include "base/units.h"
-#include "flight/selected_track.h"
 #include "report/sections/page_data.h"
 #include "report/sections/sections.h"
 
@@ -41,11 +40,10 @@ struct Positions {
     }
 };
 
-Positions positions_of(const flight::FlightSeries& series) {
-    auto east = select_track(series, "east_m");
-    auto north_m = sample_selected_track(series, "north_m", east.time_s);
+Positions positions_of(const flight::FlightData& data) {
+    auto north_m = resample(data.north_m, data.east_m.time_s);
     if (north_m.empty()) return {};
-    return {std::move(east.time_s), std::move(east.value), std::move(north_m)};
+    return {data.east_m.time_s, data.east_m.value, std::move(north_m)};
 }
 
 /// The lines of the phases, split at gaps of the samples.
@@ -114,7 +112,7 @@ VegaJson marks_of(const ReportFlight& flight, const Positions& positions, const 
 
 /// "22 min 52 s in block Standby", of the block flown longest.
 std::string longest_block(const ReportFlight& flight) {
-    const auto block = select_track(flight.series, "block");
+    const auto& block = flight.data.block;
     if (block.empty() || flight.phases.sorties.empty()) return "";
     const double start_s = flight.phases.sorties.front().phases.front().start.time_s;
     const double end_s = flight.phases.sorties.back().phases.back().end.time_s;
@@ -126,16 +124,16 @@ std::string longest_block(const ReportFlight& flight) {
     }
     if (time_s.empty()) return "";
     const auto& [number, longest_s] = *std::ranges::max_element(time_s, {}, [](const auto& one) { return one.second; });
-    const auto name = flight.series.block_names.find(number);
+    const auto name = flight.data.block_names.find(number);
     return fmt::format("{} in block {}{}", duration_text(std::round(longest_s)),
-                       name == flight.series.block_names.end() ? fmt::format("{}", number) : name->second,
+                       name == flight.data.block_names.end() ? fmt::format("{}", number) : name->second,
                        time_s.size() > 1 ? fmt::format(", of {} blocks", time_s.size()) : "");
 }
 
 /// [east, north, longitude, latitude] at one time, by which outlines are placed; null without a longitude.
-VegaJson place_of(const flight::FlightSeries& series, const Positions& positions) {
-    const auto longitude_deg = sample_selected_track(series, "longitude_deg", positions.time_s);
-    const auto latitude_deg = sample_selected_track(series, "latitude_deg", positions.time_s);
+VegaJson place_of(const flight::FlightData& data, const Positions& positions) {
+    const auto longitude_deg = resample(data.longitude_deg, positions.time_s);
+    const auto latitude_deg = resample(data.latitude_deg, positions.time_s);
     if (longitude_deg.empty() || latitude_deg.empty()) return {};
     const auto at = positions.time_s.size() / 2;
     return {positions.east_m[at], positions.north_m[at], longitude_deg[at], latitude_deg[at]};
@@ -144,7 +142,7 @@ VegaJson place_of(const flight::FlightSeries& series, const Positions& positions
 /// Data of one map; null without positions.
 VegaJson track_data(const ReportFlight& flight, const ReportBattery* battery) {
     if (!flight.rejected.empty() || flight.phases.sorties.empty()) return {};
-    const auto positions = positions_of(flight.series);
+    const auto positions = positions_of(flight.data);
     if (positions.time_s.empty()) return {};
     auto lines = lines_of(flight, positions);
     if (lines.empty()) return {};
@@ -152,7 +150,7 @@ VegaJson track_data(const ReportFlight& flight, const ReportBattery* battery) {
             {"text", longest_block(flight)},
             {"lines", std::move(lines)},
             {"marks", marks_of(flight, positions, battery)},
-            {"place", place_of(flight.series, positions)}};
+            {"place", place_of(flight.data, positions)}};
 }
 
 }  // namespace

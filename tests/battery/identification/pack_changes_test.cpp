@@ -39,7 +39,7 @@ test::SampleColumns two_flights(const TwoFlights& how) {
 }
 
 DischargeRecords records_of(const TwoFlights& how) {
-    return discharge_records(test::series_of(two_flights(how), "two"));
+    return discharge_records(select_tracks(test::series_of(two_flights(how), "two")));
 }
 
 TEST(PackChanges, AreToldByVoltageWithAndWithoutACounter) {
@@ -60,7 +60,7 @@ TEST(PackChanges, AreToldByVoltageWithAndWithoutACounter) {
 TEST(PackChanges, AreNoneInAGlide) {
     auto columns = two_flights({});
     for (const double time_s : columns.time_s) columns.altitude_m.push_back(5000.0 - time_s);
-    const auto [records, notes] = discharge_records(test::series_of(columns, "two"));
+    const auto [records, notes] = discharge_records(select_tracks(test::series_of(columns, "two")));
     EXPECT_EQ(records.size(), 1U);
     EXPECT_THAT(notes, testing::Each(testing::Not(HasSubstr("the pack was changed"))));
 }
@@ -84,7 +84,7 @@ TEST(PackChanges, CountOnWhereTheCounterBeginsAnewInFlight) {
     const auto middle = columns.time_s.size() / 2;
     const double at_middle_ah = columns.charge_ah[middle];
     for (auto i = middle; i < columns.time_s.size(); ++i) columns.charge_ah[i] -= at_middle_ah;
-    const auto [records, notes] = discharge_records(test::series_of(columns, "reset"));
+    const auto [records, notes] = discharge_records(select_tracks(test::series_of(columns, "reset")));
     ASSERT_EQ(records.size(), 1U);
     EXPECT_NEAR(records[0].charge_ah.back(), drawn_ah, 0.002);
     EXPECT_THAT(notes, ElementsAre(HasSubstr("with the same pack")));

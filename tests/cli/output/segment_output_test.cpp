@@ -16,27 +16,27 @@ using testing::HasSubstr;
 
 TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
     const auto series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    const auto phases = segment(series);
-    auto power = check_power_record(series, phases);
+    const auto phases = segment(select_tracks(series));
+    auto power = check_power_record(select_tracks(series), phases);
     const auto table = edges_table(series, phases);
     ASSERT_EQ(table.rows.size(), 4U);
     EXPECT_EQ(table.rows[2][1], "start of landing");
     EXPECT_EQ(table.rows[2][8], "Land Right AF-TD");
     EXPECT_EQ(table.rows[0][0], "1");
     EXPECT_EQ(table.rows[0][2], fmt::format("{:.1f}", phases.sorties[0].phases[0].start.time_s));
-    auto text = explanation(series, phases, power, {});
+    auto text = explanation(select_tracks(series), phases, power, {});
     EXPECT_THAT(text, HasSubstr(to_text(table)));
     EXPECT_THAT(text, HasSubstr("idle current mean: "));
     EXPECT_THAT(text, HasSubstr(fmt::format("gaps in flight: {}", power.gaps.size())));
     power.idle.reset();
-    text = explanation(series, phases, power, {});
+    text = explanation(select_tracks(series), phases, power, {});
     EXPECT_THAT(text, testing::Not(HasSubstr("idle current")));
 }
 
 TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     const auto series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    const auto phases = segment(series);
-    const auto power = check_power_record(series, phases);
+    const auto phases = segment(select_tracks(series));
+    const auto power = check_power_record(select_tracks(series), phases);
     const std::vector<std::string> warnings{"a warning"};
     const auto json = record_json(SegmentedFlight{&series, &phases, &power, &warnings});
     EXPECT_EQ(json["flight"], "opterra_synthetic_01");

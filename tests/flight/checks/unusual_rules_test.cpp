@@ -1,9 +1,9 @@
 #include "base/number.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
-#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -297,7 +297,7 @@ TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
     });
     EXPECT_THAT(seldom.warnings, testing::Contains(HasSubstr("away from the on-board energy counter")));
     const auto& sortie = seldom.phases.sorties.at(0);
-    EXPECT_GT(PowerStatistics(seldom.series).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
+    EXPECT_GT(PowerStatistics(seldom.data).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
 }
 
 }  // namespace

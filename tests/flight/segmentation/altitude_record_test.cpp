@@ -23,11 +23,11 @@ template <typename Change>
 FlightPhases phases_with(Change&& change) {
     auto columns = columns_of(sortie(100, 50.0));
     for (std::size_t i = 0; i < columns.time_s.size(); ++i) change(columns.time_s[i], columns.altitude_m[i]);
-    return segment(test::series_of(columns));
+    return segment(select_tracks(test::series_of(columns)));
 }
 
 void expect_as_flown(const FlightPhases& phases) {
-    const auto plain = segment(test::series_of(columns_of(sortie(100, 50.0))));
+    const auto plain = segment(select_tracks(test::series_of(columns_of(sortie(100, 50.0)))));
     ASSERT_EQ(phases.sorties.size(), 1u);
     ASSERT_EQ(phases.sorties[0].phases.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -80,7 +80,8 @@ TEST(AltitudeRecord, SaysThatAnEdgeLiesInATimeWithoutAltitude) {
         }
         track = kept;
     }
-    EXPECT_THAT(segment(series).warnings, testing::ElementsAre(HasSubstr("s is uncertain: 36 s without an altitude")));
+    EXPECT_THAT(segment(select_tracks(series)).warnings,
+                testing::ElementsAre(HasSubstr("s is uncertain: 36 s without an altitude")));
 }
 
 TEST(AltitudeRecord, GivesEachSideOfAJumpAGroundOfItsOwn) {
@@ -203,7 +204,7 @@ TEST(AltitudeRecord, KeepsWhatASmallAircraftFlies) {
     for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
         if (columns.altitude_m[i] == 0.0) columns.ground_speed_m_per_s[i] = 0.0;
     }
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     EXPECT_EQ(phases.sorties.size(), 1u);
     EXPECT_TRUE(phases.warnings.empty());
 }

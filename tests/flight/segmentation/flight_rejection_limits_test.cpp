@@ -67,7 +67,7 @@ std::string why_none(const Evidence& evidence) {
     FlightSeries series;
     series.tracks = {track_of("altitude_m", "ESTIMATOR.z", evidence.altitude_m, evidence.altitude_interval_s)};
     series.tracks.insert(series.tracks.end(), evidence.tracks.begin(), evidence.tracks.end());
-    const SelectedTracks tracks(series);
+    const auto tracks = select_tracks(series);
     Activity activity{{0, grid.size()}, {0, grid.size()}, std::nullopt, std::nullopt};
     if (evidence.is_from_ground) activity.ground_before_m = activity.ground_after_m = 0.0;
     const SegmentationOptions options;

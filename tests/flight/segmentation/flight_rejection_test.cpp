@@ -21,7 +21,7 @@ using test::sortie;
 using testing::HasSubstr;
 
 std::string why_none(const FlightSeries& series) {
-    const auto phases = segment(series);
+    const auto phases = segment(select_tracks(series));
     if (!phases.sorties.empty()) return fmt::format("{} sorties", phases.sorties.size());
     return phases.ground_events.empty() ? "nothing seen" : phases.ground_events.front().what;
 }
@@ -152,11 +152,11 @@ TEST(FlightRejection, IsNoRealFlightOfWhichNothingTellsOfTheMotor) {
         SCOPED_TRACE(log);
         auto series =
             read_candidates(FlightFile(test::shared_dir() / (std::string(log) + ".data")), std::nullopt).at(0);
-        const auto expected = segment(series);
+        const auto expected = segment(select_tracks(series));
         std::erase_if(series.tracks, [](const Track& track) {
             return track.name == "throttle_percent" || track.name == "power_w" || track.name == "current_a";
         });
-        const auto phases = segment(series);
+        const auto phases = segment(select_tracks(series));
         EXPECT_EQ(phases.motor_source, "nothing");
         ASSERT_EQ(phases.sorties.size(), expected.sorties.size());
         for (std::size_t i = 0; i < phases.sorties.size(); ++i) {
@@ -176,7 +176,7 @@ TEST(FlightRejection, OfNoRealRover) {
             // Nor where nothing says what it is: by physics.
             std::erase_if(series.tracks, [](const Track& track) { return track.name == "rover_mode"; });
             series.firmware.clear();
-            EXPECT_TRUE(segment(series).sorties.empty()) << series.aircraft_id;
+            EXPECT_TRUE(segment(select_tracks(series)).sorties.empty()) << series.aircraft_id;
         }
     }
 }
@@ -244,7 +244,7 @@ TEST(FlightRejection, IsWhatClimbsAtFlyingSpeedWhateverTheThrottleSays) {
             if (track.name != "throttle_percent") continue;
             for (auto& percent : track.value) percent = percent > 50.0 ? 4.0 : 0.0;
         }
-        return segment(series);
+        return segment(select_tracks(series));
     };
     const auto flown = phases_at(9.0);
     EXPECT_EQ(flown.sorties.size(), 1U);

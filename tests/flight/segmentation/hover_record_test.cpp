@@ -40,14 +40,14 @@ Track state(const char* name, std::vector<double> time_s, std::vector<double> va
 
 TEST(HoverRecord, IsThatOfARotorcraftHoweverLow) {
     auto series = hopping_copter();
-    EXPECT_EQ(segment(series).sorties.size(), 2U) << "idle motors separate them";
+    EXPECT_EQ(segment(select_tracks(series)).sorties.size(), 2U) << "idle motors separate them";
     series.tracks.push_back(state("armed", {5.0}, {1.0}));
-    const auto sorties = segment(series).sorties;
+    const auto sorties = segment(select_tracks(series)).sorties;
     ASSERT_EQ(sorties.size(), 1U) << "armed throughout, as if it descended";
     EXPECT_NEAR(sorties[0].start_s(), 20.0, 0.6);
     EXPECT_NEAR(sorties[0].end_s(), 99.5, 0.6);
     series.firmware = "fixedwing";
-    EXPECT_THAT(segment(series).sorties, IsEmpty());
+    EXPECT_THAT(segment(select_tracks(series)).sorties, IsEmpty());
 }
 
 /// Without a throttle, the current tells hovering from idling.
@@ -67,7 +67,7 @@ TEST(HoverRecord, IsToldByACurrentThatLifts) {
         power.name = "power_w";
         for (auto& value : power.value) value *= 24.0;
         series.tracks = {altitude, power, current};
-        return segment(series);
+        return segment(select_tracks(series));
     };
     const auto hover = events(19.0, 3.0);
     ASSERT_EQ(hover.sorties.size(), 1U);
@@ -82,7 +82,7 @@ TEST(HoverRecord, IsToldByACurrentThatLifts) {
 TEST(HoverRecord, IsNoneWhileTheAutopilotStatesTheGround) {
     auto series = hopping_copter();
     series.tracks.push_back(state("landed", {0.0}, {1.0}));
-    const auto phases = segment(series);
+    const auto phases = segment(select_tracks(series));
     EXPECT_THAT(phases.sorties, IsEmpty());
     EXPECT_THAT(phases.ground_events.at(0).what, testing::HasSubstr("states that it is on the ground"));
 }
@@ -100,7 +100,7 @@ FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) 
         throttle.value.push_back(time_s >= lift_off_s && time_s <= touchdown_s ? 50.0 + std::fmod(time_s, 1.0) : 20.0);
     }
     series.tracks = {altitude, throttle, state("armed", {0.0}, {1.0})};
-    return segment(series);
+    return segment(select_tracks(series));
 }
 
 void expect_edges(const FlightPhases& phases, const std::vector<double>& expected_s) {
@@ -142,11 +142,11 @@ TEST(HoverEdges, AreAbsentWhereTheLogBeginsOrEndsInTheAir) {
 TEST(HoverRecord, IsSeparatedByALanding) {
     auto series = hopping_copter();
     series.tracks.push_back(state("landed", {19.0, 62.0, 69.0, 101.0}, {0.0, 1.0, 0.0, 1.0}));
-    const auto sorties = segment(series).sorties;
+    const auto sorties = segment(select_tracks(series)).sorties;
     ASSERT_EQ(sorties.size(), 2U);
     EXPECT_NEAR(sorties[0].end_s(), 59.5, 0.6);
     EXPECT_NEAR(sorties[1].start_s(), 70.0, 0.6);
-    EXPECT_EQ(segment(series).rests.size(), 3U);
+    EXPECT_EQ(segment(select_tracks(series)).rests.size(), 3U);
 }
 
 TEST(LandDetector, ConfirmsAnEdgeIfItReportsAllTheTime) {

@@ -1,8 +1,8 @@
 #include "flight/segmentation/motor_record.h"
 
 #include "flight/segmentation.h"
-#include "flight/selected_track.h"
 #include "helpers/flown_points.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <random>
@@ -50,11 +50,11 @@ void expect_same_phases(const FlightPhases& phases, const FlightPhases& expected
 
 TEST(MotorRecord, TakesPowerWhereThereIsNoThrottle) {
     auto columns = measured_flight();
-    const auto expected = segment(test::series_of(columns));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
     ASSERT_EQ(expected.sorties.size(), 1u);
     EXPECT_EQ(expected.motor_source, "series CSV");
     columns.throttle_percent.clear();
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     expect_same_phases(phases, expected);
     EXPECT_EQ(phases.motor_source, "power: idle 0.4 W, running 45.4 W");
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor runs above 4.9 W")));
@@ -63,19 +63,19 @@ TEST(MotorRecord, TakesPowerWhereThereIsNoThrottle) {
 
 TEST(MotorRecord, TakesPowerWhereTheThrottleNeverChanges) {
     auto columns = measured_flight();
-    const auto expected = segment(test::series_of(columns));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
     for (auto& throttle : columns.throttle_percent) throttle = 0.0;
-    expect_same_phases(segment(test::series_of(columns)), expected);
+    expect_same_phases(segment(select_tracks(test::series_of(columns))), expected);
 }
 
 TEST(MotorRecord, LeavesOutThrottleThatTheMotorDoesNotFollow) {
     auto columns = measured_flight();
-    const auto expected = segment(test::series_of(columns));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
     std::mt19937 random(7);
     for (auto& throttle : columns.throttle_percent) {
         if (random() % 10 == 0) throttle = 100.0;
     }
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     expect_same_phases(phases, expected);
     EXPECT_THAT(phases.warnings,
                 testing::Contains(HasSubstr("of the throttle are removed: it is open, but the power idle")));
@@ -88,7 +88,7 @@ TEST(MotorRecord, TakesAThrottleWithoutPowerForAGlitchUpToTenSeconds) {
             const double since_s = columns.time_s[i] - columns.time_s.back() + 60.0;
             if (since_s >= 0.0 && since_s < length_s) columns.throttle_percent[i] = 60.0;
         }
-        return segment(test::series_of(columns)).warnings;
+        return segment(select_tracks(test::series_of(columns))).warnings;
     };
     const auto glitch = testing::Contains(HasSubstr("of the throttle are removed: it is open, but the power idle"));
     EXPECT_THAT(opens_for(10.0), glitch);
@@ -99,7 +99,7 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     auto columns = measured_flight();
     columns.throttle_percent.clear();
     columns.power_w.assign(columns.time_s.size(), 12.0);
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     EXPECT_EQ(phases.motor_source, "nothing");
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude only")));
     for (const auto& event : phases.ground_events) {
@@ -109,7 +109,7 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
 
 TEST(MotorRecord, TakesTheMotorsSpeedWhereNeitherThrottleNorPowerTells) {
     auto columns = measured_flight();
-    const auto expected = segment(test::series_of(columns));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
     columns.power_w.assign(columns.time_s.size(), 12.0);
     for (const double full_rpm : {min_running_rpm * 1.01, min_running_rpm * 0.99}) {
         columns.motor_speed_rpm.clear();
@@ -117,7 +117,7 @@ TEST(MotorRecord, TakesTheMotorsSpeedWhereNeitherThrottleNorPowerTells) {
             columns.motor_speed_rpm.push_back(full_rpm * std::min(percent / 60.0, 1.0));
         auto without = columns;
         without.throttle_percent.clear();
-        const auto phases = segment(test::series_of(without));
+        const auto phases = segment(select_tracks(test::series_of(without)));
         const bool turns = full_rpm > min_running_rpm;
         EXPECT_EQ(phases.motor_source, turns ? "series CSV: full 505 rpm" : "nothing");
         EXPECT_THAT(phases.warnings,
@@ -130,10 +130,10 @@ TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
     for (const double watts : {1.0, 0.0}) {
         auto columns = measured_flight();
         for (auto& power_w : columns.power_w) power_w *= watts;
-        const auto expected = segment(test::series_of(columns));
+        const auto expected = segment(select_tracks(test::series_of(columns)));
         for (auto& throttle : columns.throttle_percent) throttle /= 100.0;
         const auto series = test::series_of(columns);
-        expect_same_phases(segment(series), expected);
+        expect_same_phases(segment(select_tracks(series)), expected);
         EXPECT_EQ(select_track(series, "throttle_percent").value, columns_of_percent(series));
         EXPECT_THAT(warnings_of(series),
                     testing::Contains(HasSubstr("is 0 to 0.9: it is read as a fraction, 0 to 90 %")));
@@ -143,14 +143,14 @@ TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
     for (auto& power_w : columns.power_w) power_w = 0.4;
     for (auto& throttle : columns.throttle_percent) throttle = throttle > 0 ? 1.0 : 0.0;
     EXPECT_THAT(warnings_of(test::series_of(columns)), testing::Not(testing::Contains(HasSubstr("fraction"))));
-    EXPECT_TRUE(segment(test::series_of(columns)).sorties.empty());
+    EXPECT_TRUE(segment(select_tracks(test::series_of(columns))).sorties.empty());
 }
 
 TEST(MotorRecord, BelievesNoThrottleBeyondFull) {
     auto columns = measured_flight();
-    const auto expected = segment(test::series_of(columns));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
     for (auto& throttle : columns.throttle_percent) throttle += 213.0;
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     expect_same_phases(phases, expected);
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: the motor runs above")));
 }
@@ -169,7 +169,7 @@ FlightSeries manual_flight(double speed_m_per_s) {
 }
 
 TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
-    const auto phases = segment(manual_flight(12.0));
+    const auto phases = segment(select_tracks(manual_flight(12.0)));
     ASSERT_EQ(phases.sorties.size(), 2U);
     EXPECT_NEAR(phases.sorties[1].start_s() - phases.sorties[0].start_s(), 600.0, 2.0);
     EXPECT_NEAR(phases.sorties[1].end_s() - phases.sorties[0].end_s(), 600.0, 2.0);
@@ -177,7 +177,7 @@ TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
                 testing::Contains(testing::AllOf(HasSubstr("is idle while the power is that of a running motor ("),
                                                  HasSubstr("the latter is used there"))));
     // What stands, with power for its electronics, keeps its throttle.
-    const auto standing = segment(manual_flight(3.9));
+    const auto standing = segment(select_tracks(manual_flight(3.9)));
     EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the latter is used there"))));
 }
 
@@ -188,7 +188,7 @@ TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
             const double since_s = columns.time_s[i] - 480.0;  // after the landing
             if (since_s >= 0.0 && since_s <= powered_s) columns.power_w[i] = 60.0;
         }
-        return segment(test::series_of(columns)).warnings;
+        return segment(select_tracks(test::series_of(columns))).warnings;
     };
     const auto counts = testing::Contains(HasSubstr("the latter is used there"));
     EXPECT_THAT(with_power_for(28.0), Not(counts));
@@ -204,7 +204,7 @@ TEST(MotorRecord, TakesTheMotorsSpeedWhereTheThrottleIdlesAndPowerTellsNothing) 
             const double since_s = columns.time_s[i] - 480.0;  // after the landing
             if (since_s >= 0.0 && since_s <= turning_s) columns.motor_speed_rpm[i] = 3000.0;
         }
-        return segment(test::series_of(columns)).warnings;
+        return segment(select_tracks(test::series_of(columns))).warnings;
     };
     const auto counts = testing::Contains(
         testing::AllOf(HasSubstr("is idle while the motor turns at"), HasSubstr("the latter is used there")));
@@ -231,7 +231,7 @@ MotorRecord record_of(const std::vector<Section>& sections) {
         }
     }
     const auto series = test::series_of(columns);
-    return motor_record(series, select_track(series, "altitude_m"));
+    return motor_record(select_tracks(series), select_track(series, "altitude_m"));
 }
 
 /// Whether power shows when the motor runs.

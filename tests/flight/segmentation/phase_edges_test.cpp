@@ -18,7 +18,7 @@ Sortie flown(std::vector<Point> end, double left_s = 430.0) {
     const auto last_s = points.back().time_s;
     points.push_back({last_s + 1, 0, 0});
     points.push_back({last_s + 60, 0, 0});
-    const auto phases = segment(test::series_of(points));
+    const auto phases = segment(select_tracks(test::series_of(points)));
     EXPECT_EQ(phases.sorties.size(), 1u);
     return phases.sorties.empty() ? Sortie{} : phases.sorties.front();
 }
@@ -77,7 +77,7 @@ TEST(PhaseEdges, LiftOffIsNotBeforeTheMotorFirstRuns) {
                                      {500, 60, 60},
                                      {530, 0, 0},
                                      {600, 0, 0}});
-    const auto phases = segment(test::series_of(columns));
+    const auto phases = segment(select_tracks(test::series_of(columns)));
     ASSERT_EQ(phases.sorties.size(), 1u);
     EXPECT_NEAR(phases.sorties[0].start_s(), 201.0, 3.0);
 }

@@ -1,7 +1,7 @@
 #include "live/state/telemetry_store.h"
 
-#include "flight/selected_track.h"
 #include "flight/telemetry_series.h"
+#include "helpers/selected_tracks.h"
 #include "live/sources.h"
 
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "report/figures/flight_figures.h"
 
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 ReportFlight sample_flight() {
     ReportFlight flight;
     flight.series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    flight.phases = segment(flight.series);
+    flight.phases = segment(flight.data);
     flight.name = flight.series.flight;
     return flight;
 }

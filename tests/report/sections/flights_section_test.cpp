@@ -14,7 +14,7 @@ using testing::Not;
 ReportFlight sample_flight(const std::string& path) {
     ReportFlight flight;
     flight.series = flight::read_flight(test::source_dir() / (path + ".data"));
-    flight.phases = segment(flight.series);
+    flight.phases = segment(flight.data);
     flight.name = flight.series.flight;
     return flight;
 }

@@ -17,7 +17,7 @@ using testing::StartsWith;
 ReportFlight read_sample() {
     ReportFlight flight;
     flight.series = flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
-    flight.phases = segment(flight.series);
+    flight.phases = segment(flight.data);
     flight.name = flight.series.flight;
     return flight;
 }

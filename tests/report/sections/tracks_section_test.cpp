@@ -19,7 +19,7 @@ using testing::HasSubstr;
 BatchContent sample_batch() {
     ReportFlight flight;
     flight.series = flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
-    flight.phases = segment(flight.series);
+    flight.phases = segment(flight.data);
     flight.name = flight.series.flight;
     BatchContent batch;
     batch.flights = {flight};

@@ -1,9 +1,9 @@
-#include "flight/sources/device_check.h"
+#include "flight/select/device_check.h"
 
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
-#include "flight/sources/device_sum.h"
+#include "flight/select/device_sum.h"
 
 #include <algorithm>
 #include <charconv>

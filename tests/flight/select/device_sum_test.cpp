@@ -1,9 +1,9 @@
-#include "flight/sources/device_sum.h"
+#include "flight/select/device_sum.h"
 
 #include "base/number.h"
-#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ Track motor(const std::string& id, const std::vector<double>& time_s) {
 DeviceSum sum_of(const std::vector<Track>& motors) {
     FlightSeries series;
     series.tracks = motors;
-    return sum_over_devices(series, "power_w", "ESC");
+    return sum_over_devices(devices_of(series, "power_w", "ESC"));
 }
 
 std::vector<double> each_second(int count, double from_s = 0.0) {
@@ -153,7 +153,7 @@ TEST(DeviceSum, IsNoneWithLessThanAQuarterOfTheTimes) {
 
 TEST(DeviceSum, IsOfDevicesThatReportMoreThanRarely) {
     const auto is_rare = [](int reports, std::size_t most) {
-        return reports_rarely({"1", motor("1", each_second(reports)), {}}, most);
+        return reports_rarely({"ESC 1", "1", motor("1", each_second(reports)), {}}, most);
     };
     EXPECT_TRUE(is_rare(9, 1000));
     EXPECT_FALSE(is_rare(10, 1000)) << "one percent";

@@ -1,4 +1,4 @@
-#include "flight/sources/power_source.h"
+#include "flight/select/power.h"
 
 #include <string>
 #include <vector>
@@ -31,7 +31,7 @@ FlightSeries series_of(const std::vector<Samples>& samples) {
 }
 
 bool takes_power(const std::vector<Samples>& samples) {
-    return select_power(series_of(samples)).track.source == "ENERGY.power";
+    return select_power(series_of(samples)).source == "ENERGY.power";
 }
 
 TEST(PowerSource, IsNotAPowerOfWhichMostSamplesAreAFifthAwayFromVoltageTimesCurrent) {
@@ -48,11 +48,11 @@ TEST(PowerSource, IsNotAPowerOfWhichMostSamplesAreAFifthAwayFromVoltageTimesCurr
 TEST(PowerSource, MayBeOfAnyMessageThatPaparazziHasNot) {
     FlightSeries series;
     series.tracks = {{.name = "power_w", .source = "BAT.Volt*Curr", .time_s = {1.0, 2.0}, .value = {10.0, 11.0}}};
-    EXPECT_EQ(select_power(series).track.value, (std::vector<double>{10.0, 11.0}));
+    EXPECT_EQ(select_power(series).value, (std::vector<double>{10.0, 11.0}));
     series.tracks[0].source = "CURR.Volt * CURR.Curr";
-    EXPECT_EQ(select_power(series).track.value, (std::vector<double>{10.0, 11.0}));
+    EXPECT_EQ(select_power(series).value, (std::vector<double>{10.0, 11.0}));
     series.tracks[0].value = {0.0, 0.0};
-    EXPECT_EQ(select_power(series).rejected_sources, std::vector<std::string>{"CURR.Volt * CURR.Curr is 0 throughout"});
+    EXPECT_EQ(select_power(series).not_chosen, std::vector<std::string>{"CURR.Volt * CURR.Curr is 0 throughout"});
 }
 
 TEST(PowerSource, IsContradictedInSamplesATenthAndAWattAwayFromVoltageTimesCurrent) {

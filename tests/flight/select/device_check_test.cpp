@@ -1,8 +1,8 @@
-#include "flight/sources/device_check.h"
+#include "flight/select/device_check.h"
 
 #include "base/number.h"
-#include "flight/selected_track.h"
 #include "helpers/damaged_logs.h"
+#include "helpers/selected_tracks.h"
 
 #include <cmath>
 #include <functional>

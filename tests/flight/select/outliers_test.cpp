@@ -1,6 +1,6 @@
-#include "flight/sources/outliers.h"
+#include "flight/select/outliers.h"
 
-#include "flight/selected_track.h"
+#include "helpers/selected_tracks.h"
 
 #include <initializer_list>
 #include <string>
@@ -82,7 +82,7 @@ TEST(PhysicalBounds, AreKeptByTheChosenTrack) {
 }
 
 std::size_t removed(const Track& track, const Track& throttle = {}) {
-    return track.value.size() - remove_outliers(track, {}, throttle).track.value.size();
+    return track.value.size() - remove_outliers(track, {}, throttle).value.size();
 }
 
 TEST(Outliers, AreSpikesOfPowerAndCurrent) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/flight_series.h"
+#include "flight/flight_data.h"
 
 #include <cstddef>
 #include <optional>
@@ -27,7 +27,7 @@ std::size_t erase_times(Track& track, const std::vector<double>& times_s);
 
 /// The candidate without impossible samples, with notes about them: samples beyond the physical bounds, samples at
 /// `contradicted_s` (rising), dropouts by `throttle` (empty if unknown), and spikes. Empty if none is usable.
-TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s = {},
-                               const Track& throttle = {});
+ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s = {},
+                            const Track& throttle = {});
 
 }  // namespace flightwatt::flight

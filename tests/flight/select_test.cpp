@@ -1,7 +1,6 @@
-#include "flight/selected_track.h"
-
 #include "flight/load_flight.h"
 #include "flight/telemetry_series.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <string>

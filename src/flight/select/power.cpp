@@ -1,10 +1,10 @@
-#include "flight/sources/power_source.h"
+#include "flight/select/power.h"
 
 #include "base/statistics.h"
-#include "flight/sources/batteries.h"
+#include "flight/select/device_check.h"
+#include "flight/select/device_sum.h"
+#include "flight/select/outliers.h"
 #include "flight/sources/derived_tracks.h"
-#include "flight/sources/device_sum.h"
-#include "flight/sources/outliers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,27 +111,29 @@ bool measures_something(const Track& power) {
            std::any_of(power.value.begin(), power.value.end(), [](double value) { return value != 0.0; });
 }
 
-/// Selects a candidate if it measures something, or notes why not.
-bool take(const FlightSeries& series, const Track& candidate, TrackSelection& choice,
+/// Chooses a candidate if it measures something, or notes why not.
+bool take(const FlightSeries& series, const Track& candidate, ChosenTrack& power,
           const std::vector<double>& contradicted_s = {}) {
     auto cleaned = remove_outliers(candidate, contradicted_s, dropout_throttle(series, candidate));
-    if (measures_something(cleaned.track)) {
-        choice.track = std::move(cleaned.track);
-        choice.removal_notes = std::move(cleaned.removal_notes);
+    if (measures_something(cleaned)) {
+        cleaned.not_chosen = std::move(power.not_chosen);
+        power = std::move(cleaned);
         return true;
     }
-    if (cleaned.track.empty() && !cleaned.removal_notes.empty()) {
-        choice.rejected_sources.push_back(std::move(cleaned.removal_notes.front()));
+    if (cleaned.empty() && !cleaned.notes.empty()) {
+        power.not_chosen.push_back(std::move(cleaned.notes.front()));
     } else {
-        choice.rejected_sources.push_back(
-            candidate.source + (is_unmeasured_battery(candidate) ? " has no value: there is no current sensor"
-                                : candidate.time_s.size() < 2    ? " has no two finite values"
-                                                                 : " is 0 throughout"));
+        power.not_chosen.push_back(candidate.source + (is_unmeasured_battery(candidate)
+                                                           ? " has no value: there is no current sensor"
+                                                       : candidate.time_s.size() < 2 ? " has no two finite values"
+                                                                                     : " is 0 throughout"));
     }
     return false;
 }
 
 }  // namespace
+
+bool has_plain_power(const FlightSeries& series) { return find_plain(series, "power_w") != nullptr; }
 
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source) {
     if (source.find('.') == std::string_view::npos) {
@@ -153,52 +155,32 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
     return throttle == nullptr ? Track{} : within_bounds(*throttle);
 }
 
-std::optional<TrackSelection> select_of_batteries(const FlightSeries& series, std::string_view name) {
-    constexpr std::size_t enough_samples = 30;  // to know from a record what is far beyond it
-    auto choice = battery_track(series, name);
-    if (!choice) return choice;
-    auto& track = choice->track;
-    if (track.time_s.size() < enough_samples) {
-        track = within_bounds(track);
-        return choice;
-    }
-    auto cleaned = remove_outliers(track, {}, name == "voltage_v" ? Track{} : dropout_throttle(series, track));
-    track = std::move(cleaned.track);
-    std::ranges::move(cleaned.removal_notes, std::back_inserter(choice->removal_notes));
-    return choice;
-}
-
-TrackSelection select_power(const FlightSeries& series) {
-    TrackSelection choice;
+ChosenTrack select_power(const FlightSeries& series) {
     if (const auto* plain = find_plain(series, "power_w")) {
         // Accepted even if it is 0 throughout.
         return remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
     }
-    if (auto of_batteries = select_of_batteries(series, "power_w")) {
-        if (measures_something(of_batteries->track)) return *std::move(of_batteries);
-        choice.rejected_sources = std::move(of_batteries->rejected_sources);
-        choice.rejected_sources.emplace_back("the batteries' power is 0 throughout");
-        return choice;
-    }
+    ChosenTrack power;
     const auto* product = find_product(series, "ENERGY.");
     for (const auto& track : series.tracks) {
         if (track.name != "power_w" || !(track.device.empty() || is_unmeasured_battery(track))) continue;
         const bool is_power = track.source == "ENERGY.power";
         if (is_power && product != nullptr && contradicts(track, *product))
-            choice.rejected_sources.emplace_back("ENERGY.power is not voltage times current");
-        else if (take(series, track, choice,
+            power.not_chosen.emplace_back("ENERGY.power is not voltage times current");
+        else if (take(series, track, power,
                       is_power ? contradicted_times(series, track.source) : std::vector<double>{}))
-            return choice;
+            return power;
     }
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
     if (find_product(series, "BAT.") == nullptr && std::ranges::any_of(series.tracks, is_bat))
-        choice.rejected_sources.emplace_back("BAT has no current");
-    for (const auto* message : {"ESC", "POWER_DEVICE"}) {
-        auto sum = sum_over_devices(series, "power_w", message);
-        if (!sum.ambiguity.empty()) choice.rejected_sources.push_back(std::move(sum.ambiguity));
-        if (sum.track.source.empty() || !take(series, sum.track, choice)) continue;
-        std::ranges::move(sum.notes, std::back_inserter(choice.removal_notes));
-        return choice;
+        power.not_chosen.emplace_back("BAT has no current");
+    for (const auto* message : device_messages) {
+        auto sum = sum_over_devices(devices_of(series, "power_w", message));
+        if (!sum.ambiguity.empty()) power.not_chosen.push_back(std::move(sum.ambiguity));
+        if (sum.track.source.empty() || !take(series, sum.track, power)) continue;
+        std::ranges::move(sum.notes, std::back_inserter(power.notes));
+        std::ranges::move(find_suspect_devices(series, message), std::back_inserter(power.notes));
+        return power;
     }
     for (const auto* message : {"ENERGY", "ESC", "POWER_DEVICE"}) {
         const auto is_of = [&](const Track& track) {
@@ -206,10 +188,9 @@ TrackSelection select_power(const FlightSeries& series) {
         };
         const bool is_power = find_track(series, "power_w", is_of) != nullptr;
         if (!is_power && std::ranges::any_of(series.tracks, is_of))
-            choice.rejected_sources.push_back(
-                fmt::format("{} has no power in W, nor current in A with voltage", message));
+            power.not_chosen.push_back(fmt::format("{} has no power in W, nor current in A with voltage", message));
     }
-    return choice;
+    return power;
 }
 
 }  // namespace flightwatt::flight

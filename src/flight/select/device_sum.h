@@ -3,7 +3,6 @@
 #include "flight/flight_series.h"
 
 #include <cstddef>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,7 @@ namespace flightwatt::flight {
 
 /// One of several senders of the same message.
 struct Device {
+    std::string name;  ///< "ESC 3", "BAT 0"
     std::string id;
     Track track;
     std::vector<Track> repeated;  ///< second, third ... reports of one time
@@ -30,10 +30,8 @@ struct DeviceSum {
     std::vector<std::string> notes;  ///< devices that become silent or report rarely
 };
 
-/// Sum over the devices of `message` that report `name`, without those of `left_out`, at the times at which none is
-/// silent (docs/methods.md). The track's `source` states their number.
-DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message,
-                           const std::set<std::string>& left_out = {});
+/// Sum over devices at the times at which none is silent (docs/methods.md). The track's `source` states their number.
+DeviceSum sum_over_devices(std::vector<Device> devices);
 
 /// Whether the track is a sum over more than one device.
 bool is_sum_over_devices(const Track& track);

@@ -1,6 +1,7 @@
-#include "flight/sources/outliers.h"
+#include "flight/select/outliers.h"
 
 #include "base/statistics.h"
+#include "base/units.h"
 #include "flight/checks/runs.h"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ constexpr double neighbour_factor = 2.0;
 constexpr double voltage_step = 0.30;
 constexpr double counter_step = 0.01;
 constexpr std::size_t max_dropout = 3;
+constexpr double max_dropout_part = 0.2;  // of the samples: more may be a motor that is pulsed
 constexpr double dropout_throttle_percent = 30.0;
 constexpr double running_fraction = 0.25;
 
@@ -165,34 +167,40 @@ std::size_t erase_times(Track& track, const std::vector<double>& times_s) {
     });
 }
 
-TrackSelection remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s,
-                               const Track& throttle) {
-    TrackSelection selection;
+ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s, const Track& throttle) {
+    ChosenTrack chosen{within_bounds(candidate)};
     std::vector<std::string> reasons;
     const auto all = candidate.value.size();
-    selection.track = within_bounds(candidate);
-    if (selection.track.empty() && all > 0) {
+    if (chosen.empty() && all > 0) {
         const auto bounds = physical_bounds(candidate.name).value();
-        selection.removal_notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name,
-                                                      candidate.source, bounds.low, bounds.high));
-        return selection;
+        chosen.notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}", candidate.name, candidate.source,
+                                           bounds.low, bounds.high));
+        return chosen;
     }
-    if (const auto beyond = all - selection.track.value.size(); beyond > 0)
+    if (const auto beyond = all - chosen.value.size(); beyond > 0)
         reasons.push_back(fmt::format("{} beyond physical bounds", beyond));
     const auto remove = [&](const std::vector<double>& times_s, const char* reason) {
-        if (const auto removed = erase_times(selection.track, times_s); removed > 0)
+        if (const auto removed = erase_times(chosen, times_s); removed > 0)
             reasons.push_back(fmt::format("{} {}", removed, reason));
     };
     remove(contradicted_s, "where power is not voltage times current");
-    remove(dropout_times(selection.track, throttle), "at 0 for up to three samples with the throttle open");
-    remove(spike_times(selection.track),
+    const auto dropouts_s = dropout_times(chosen, throttle);
+    const double dropout_part = static_cast<double>(dropouts_s.size()) / std::max(1.0, static_cast<double>(all));
+    if (dropout_part <= max_dropout_part)
+        remove(dropouts_s, "at 0 for up to three samples with the throttle open");
+    else
+        chosen.notes.push_back(fmt::format(
+            "{} ({}) is 0 in {:.0f} % of its samples, between others with the throttle open: a pulsed motor, or a sensor "
+            "that fails; they count as they are, without them {:.0f} % of the energy would be added",
+            candidate.name, candidate.source, units::percentage(dropout_part, 1.0),
+            units::percentage(dropout_part, 1.0 - dropout_part)));
+    remove(spike_times(chosen),
            is_counter(candidate) ? "out of the counter's order" : "far beyond the neighbouring samples");
     if (!reasons.empty()) {
-        selection.removal_notes.push_back(fmt::format("{} of {} samples of {} ({}) are removed: {}",
-                                                      all - selection.track.value.size(), all, candidate.name,
-                                                      candidate.source, fmt::join(reasons, ", ")));
+        chosen.notes.push_back(fmt::format("{} of {} samples of {} ({}) are removed: {}", all - chosen.value.size(),
+                                           all, candidate.name, candidate.source, fmt::join(reasons, ", ")));
     }
-    return selection;
+    return chosen;
 }
 
 }  // namespace flightwatt::flight

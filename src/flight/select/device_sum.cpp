@@ -1,6 +1,6 @@
-#include "flight/sources/device_sum.h"
+#include "flight/select/device_sum.h"
 
-#include "flight/sources/outliers.h"
+#include "flight/select/outliers.h"
 
 #include <algorithm>
 #include <optional>
@@ -18,7 +18,7 @@ constexpr double repeated_fraction = 0.05;    // of a device's reports: less is 
 constexpr double min_summed_fraction = 0.25;  // of the times: with less there is no power record
 
 /// Detects several devices with one id by their reports of one time.
-void check_ids(const std::vector<Device>& devices, std::string_view message, DeviceSum& sum) {
+void check_ids(const std::vector<Device>& devices, DeviceSum& sum) {
     for (const auto& device : devices) {
         const auto& track = device.track;
         const auto is_often = [&](std::size_t reports) {
@@ -34,13 +34,12 @@ void check_ids(const std::vector<Device>& devices, std::string_view message, Dev
         const bool differ = 2 * differing > reports;
         const auto times = device.repeated.size() + 1;
         if (is_often(reports) && (differ || (times > 2 && is_often(device.repeated.back().time_s.size())))) {
-            sum.ambiguity = fmt::format("{} {} reports {} times at one time{}: several devices have this id", message,
-                                        device.id, times, differ ? ", and differently" : "");
+            sum.ambiguity = fmt::format("{} reports {} times at one time{}: several devices have this id", device.name,
+                                        times, differ ? ", and differently" : "");
         } else if (devices.size() == 1 && is_often(reports)) {
             sum.notes.push_back(fmt::format(
-                "{} {} reports up to {} times at one time: repeated lines, or several devices with this id; counted "
-                "once",
-                message, device.id, times));
+                "{} reports up to {} times at one time: repeated lines, or several devices with this id; counted once",
+                device.name, times));
         }
     }
 }
@@ -63,8 +62,7 @@ std::optional<double> report_at(const Track& track, double median_s, double time
 }
 
 /// Adds a device where it reports and drops the other times of the sum.
-void add_device(Track& sum, const Device& device, double clock_s, std::string_view message,
-                std::vector<std::string>& notes) {
+void add_device(Track& sum, const Device& device, double clock_s, std::vector<std::string>& notes) {
     const double median_s = std::max(median_interval_s(device.track.time_s), clock_s);
     Track total{sum.name, sum.source, sum.device, sum.since_s, {}, {}};
     std::optional<double> silent_from_s;
@@ -79,9 +77,8 @@ void add_device(Track& sum, const Device& device, double clock_s, std::string_vi
     }
     if (silent_from_s) {
         notes.push_back(fmt::format(
-            "{} {} is silent at {} of {} times, first at {:.1f} s: the sum over the devices has "
-            "no value there",
-            message, device.id, sum.time_s.size() - total.time_s.size(), sum.time_s.size(), *silent_from_s));
+            "{} is silent at {} of {} times, first at {:.1f} s: the sum over the devices has no value there",
+            device.name, sum.time_s.size() - total.time_s.size(), sum.time_s.size(), *silent_from_s));
     }
     sum = std::move(total);
 }
@@ -99,7 +96,7 @@ std::vector<Device> devices_of(const FlightSeries& series, std::string_view name
         if (known != devices.end()) {
             known->repeated.push_back(track);
         } else if (auto valid = within_bounds(track); !valid.empty()) {
-            devices.push_back({id, std::move(valid), {}});
+            devices.push_back({fmt::format("{} {}", message, id), id, std::move(valid), {}});
         }
     }
     std::ranges::stable_sort(devices, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
@@ -115,26 +112,25 @@ bool reports_rarely(const Device& device, std::size_t max_reports) {
            (reports < min_reports && max_reports >= enough_reports);
 }
 
-DeviceSum sum_over_devices(const FlightSeries& series, std::string_view name, std::string_view message,
-                           const std::set<std::string>& left_out) {
+DeviceSum sum_over_devices(std::vector<Device> devices) {
     DeviceSum sum;
-    auto devices = devices_of(series, name, message);
-    std::erase_if(devices, [&](const Device& device) { return left_out.contains(device.id); });
+    std::erase_if(devices, [](const Device& device) { return device.track.empty(); });
     if (devices.empty()) return sum;
+    std::ranges::stable_sort(devices, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
     const auto max_reports = devices.front().track.time_s.size();
     std::erase_if(devices, [&](const Device& device) {
         const bool is_rare = reports_rarely(device, max_reports);
         if (is_rare) {
-            sum.notes.push_back(fmt::format("{} {} reports only {} times: it is excluded from the sum", message,
-                                            device.id, device.track.time_s.size()));
+            sum.notes.push_back(fmt::format("{} reports only {} times: it is excluded from the sum", device.name,
+                                            device.track.time_s.size()));
         }
         return is_rare;
     });
-    check_ids(devices, message, sum);
+    check_ids(devices, sum);
     if (!sum.ambiguity.empty()) return sum;
     sum.track = devices.front().track;
     const double clock_s = median_interval_s(sum.track.time_s);
-    for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, message, sum.notes);
+    for (std::size_t d = 1; d < devices.size(); ++d) add_device(sum.track, devices[d], clock_s, sum.notes);
     if (static_cast<double>(sum.track.time_s.size()) < min_summed_fraction * static_cast<double>(max_reports)) {
         sum.ambiguity = sum.notes.back();
         sum.track = {};

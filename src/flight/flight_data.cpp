@@ -1,0 +1,147 @@
+#include "flight/flight_data.h"
+
+#include "base/error.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+/// What the .log or the program assumed of the messages' layout and units; empty without an assumption.
+std::string assumed_definitions_text(const FlightInfo& info) {
+    if (info.assumed_definitions.empty()) return "";
+    std::vector<std::string> texts;
+    for (const auto& definition : info.assumed_definitions) texts.push_back(definition.text);
+    return fmt::format("{}: {}", info.log_is_missing ? "no .log: message layouts assumed" : "units in the .log",
+                       fmt::join(texts, ", "));
+}
+
+}  // namespace
+
+std::span<const TrackMember> track_members() {
+    using D = FlightData;
+    static constexpr auto members = std::to_array<TrackMember>({
+        {"altitude_m", &D::altitude_m},
+        {"throttle_percent", &D::throttle_percent},
+        {"voltage_v", &D::voltage_v},
+        {"current_a", &D::current_a},
+        {"power_w", &D::power_w},
+        {"charge_ah", &D::charge_ah},
+        {"energy_wh", &D::energy_wh},
+        {"east_m", &D::east_m},
+        {"north_m", &D::north_m},
+        {"ground_speed_m_per_s", &D::ground_speed_m_per_s},
+        {"airspeed_m_per_s", &D::airspeed_m_per_s},
+        {"wind_speed_m_per_s", &D::wind_speed_m_per_s},
+        {"wind_east_m_per_s", &D::wind_east_m_per_s},
+        {"wind_north_m_per_s", &D::wind_north_m_per_s},
+        {"latitude_deg", &D::latitude_deg},
+        {"longitude_deg", &D::longitude_deg},
+        {"heading_deg", &D::heading_deg},
+        {"course_deg", &D::course_deg},
+        {"climb_m_per_s", &D::climb_m_per_s},
+        {"roll_deg", &D::roll_deg},
+        {"air_temperature_c", &D::air_temperature_c},
+        {"motor_speed_rpm", &D::motor_speed_rpm},
+        {"mass_kg", &D::mass_kg},
+        {"rotor_area_m2", &D::rotor_area_m2},
+        {"mode", &D::mode},
+        {"block", &D::block},
+        {"rover_mode", &D::rover_mode},
+        {"takeoff", &D::takeoff},
+        {"armed", &D::armed},
+        {"landed", &D::landed},
+        {"ground_altitude_m", &D::ground_altitude_m},
+        {"payload_kg", &D::payload_kg},
+    });
+    return members;
+}
+
+std::optional<double> first_value(const Track& track) {
+    return track.empty() ? std::nullopt : std::optional(track.value.front());
+}
+
+std::optional<double> last_value(const Track& track) {
+    return track.empty() ? std::nullopt : std::optional(track.value.back());
+}
+
+std::map<std::string, std::string> track_sources(const FlightData& data) {
+    std::map<std::string, std::string> sources;
+    for (const auto& [name, member] : track_members())
+        if (const auto& track = data.*member; !track.empty()) sources.emplace(name, track.source);
+    return sources;
+}
+
+std::vector<std::string> selection_warnings(const FlightData& data) {
+    std::vector<std::string> warnings;
+    if (auto assumed = assumed_definitions_text(data); !assumed.empty()) warnings.push_back(std::move(assumed));
+    if (data.current_origin == CurrentOrigin::throttle) {
+        warnings.emplace_back(
+            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: the current is computed from the "
+            "throttle, so a power model fitted to it is circular");
+    }
+    const auto add = [&](const std::vector<std::string>& notes) {
+        warnings.insert(warnings.end(), notes.begin(), notes.end());
+    };
+    if (!data.power_w.empty())  // else see no_power_reason
+        for (const auto& reason : data.power_w.not_chosen)
+            warnings.push_back(fmt::format("{}: power is that of {}", reason, data.power_w.source));
+    add(data.power_w.notes);
+    for (const auto& [name, member] : track_members())
+        if (member != &FlightData::power_w) add((data.*member).notes);
+    for (const auto& skip : data.skipped) warnings.push_back(describe(skip));
+    if (data.log_is_missing && data.assumed_definitions.empty()) warnings.emplace_back("no .log");
+    add(data.notes);
+    return warnings;
+}
+
+FlightData of_circuit(FlightData data, std::size_t number) {
+    if (number == 0 || number > data.circuits.size()) {
+        std::vector<std::string> names;
+        for (const auto& circuit : data.circuits) names.push_back(circuit.name);
+        throw InputError({data.file}, fmt::format("{} has no circuit {}", data.flight, number),
+                         names.empty() ? "its log does not number batteries: leave the circuit out"
+                                       : fmt::format("its circuits are, from 1: {}", fmt::join(names, ", ")));
+    }
+    const auto& circuit = data.circuits[number - 1];
+    data.power_w = {circuit.power_w};
+    data.voltage_v = {circuit.voltage_v};
+    data.current_a = {circuit.current_a};
+    data.charge_ah = {circuit.charge_ah};
+    data.energy_wh = {};
+    return data;
+}
+
+std::string no_power_reason(const FlightData& data) {
+    if (!data.power_w.empty()) return "";
+    auto reasons = data.power_w.not_chosen;
+    for (const auto& skip : data.skipped) reasons.push_back(describe(skip));
+    for (const auto& assumed : data.assumed_definitions)
+        reasons.push_back(fmt::format("{} {}", data.log_is_missing ? "assumed" : "the .log:", assumed.text));
+    return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+void require_power(const FlightData& data, const std::string& messages) {
+    if (const auto& restart = data.clock_restart) {
+        throw InputError({data.file},
+                         fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
+                                     restart->to_s, data.aircraft_id, restart->message),
+                         "the file has several recordings: split it there");
+    }
+    if (!data.power_w.empty()) return;
+    const auto reasons = no_power_reason(data);
+    const auto reason = reasons.empty() ? "" : fmt::format(" ({})", reasons);
+    const bool is_paparazzi = !data.aircraft_name.starts_with("Ardu") && !data.aircraft_name.starts_with("PX4");
+    const auto whose = data.aircraft_id.empty() ? "" : " of aircraft " + data.aircraft_id;
+    throw InputError({data.file}, fmt::format("has no measured power{}{}", whose, reason),
+                     fmt::format("expected {}{}{}",
+                                 is_paparazzi ? "ENERGY with power, BAT or ENERGY with current, ESC or POWER_DEVICE"
+                                              : "BAT, CURR, ESC or battery_status with current",
+                                 messages.empty() ? "" : "; it has ", messages));
+}
+
+}  // namespace flightwatt::flight

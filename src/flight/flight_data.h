@@ -1,0 +1,105 @@
+#pragma once
+
+#include "flight/flight_series.h"
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace flightwatt::flight {
+
+/// The track that is used for a quantity; empty if the log has none. `source` states its origin: "ENERGY.voltage *
+/// ENERGY.current", "ESC, summed over 4 devices".
+struct ChosenTrack : Track {
+    std::vector<std::string> notes = {};       ///< removed samples, replaced intervals, unusable sources
+    std::vector<std::string> not_chosen = {};  ///< sources that were rejected, with the reason
+};
+
+/// Packs at one voltage, and the tracks of their sum.
+struct Circuit {
+    std::string name;  ///< of its monitors: "BAT 0 and BAT 1"
+    double mean_power_w = 0.0;
+    Track power_w = {};
+    Track voltage_v = {};  ///< of the pack with the most power
+    Track current_a = {};
+    Track charge_ah = {};
+};
+
+/// One flight's log with the track that is used for each quantity: what all steps after the selection read. Made by
+/// select_tracks() alone. Voltage, current and charge are those of the first circuit; power and energy are of all.
+struct FlightData : FlightInfo {
+    ChosenTrack altitude_m;
+    ChosenTrack throttle_percent;
+    ChosenTrack voltage_v;
+    ChosenTrack current_a;
+    ChosenTrack power_w;
+    ChosenTrack charge_ah;
+    ChosenTrack energy_wh;
+    ChosenTrack east_m;
+    ChosenTrack north_m;
+    ChosenTrack ground_speed_m_per_s;
+    ChosenTrack airspeed_m_per_s;
+    ChosenTrack wind_speed_m_per_s;
+    ChosenTrack wind_east_m_per_s;
+    ChosenTrack wind_north_m_per_s;
+    ChosenTrack latitude_deg;
+    ChosenTrack longitude_deg;
+    ChosenTrack heading_deg;
+    ChosenTrack course_deg;
+    ChosenTrack climb_m_per_s;
+    ChosenTrack roll_deg;
+    ChosenTrack air_temperature_c;
+    ChosenTrack motor_speed_rpm;
+    ChosenTrack mass_kg;
+    ChosenTrack rotor_area_m2;
+    ChosenTrack mode;
+    ChosenTrack block;
+    ChosenTrack rover_mode;
+    ChosenTrack takeoff;
+    ChosenTrack armed;
+    ChosenTrack landed;
+    ChosenTrack ground_altitude_m;
+    ChosenTrack payload_kg;
+
+    std::vector<Circuit> circuits;       ///< of batteries that the log numbers, the one with the most energy first
+    std::vector<Track> other_altitudes;  ///< that were not chosen
+    double last_s = -std::numeric_limits<double>::infinity();  ///< see last_time_s()
+
+    bool is_rotorcraft() const { return firmware == "rotorcraft"; }
+};
+
+/// A quantity, and where FlightData has it.
+struct TrackMember {
+    std::string_view name;
+    ChosenTrack FlightData::*track;
+};
+
+/// All quantities, in the order of the series file's columns.
+std::span<const TrackMember> track_members();
+
+/// First and last value of a track; std::nullopt for an empty one.
+std::optional<double> first_value(const Track& track);
+std::optional<double> last_value(const Track& track);
+
+/// Source of each track that the flight has, by the name of the track.
+std::map<std::string, std::string> track_sources(const FlightData& data);
+
+/// Warnings about the log and the choice of its tracks, for the user.
+std::vector<std::string> selection_warnings(const FlightData& data);
+
+/// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if there is none.
+FlightData of_circuit(FlightData data, std::size_t number);
+
+/// Why there is no measured power; empty if there is.
+std::string no_power_reason(const FlightData& data);
+
+/// Throws InputError if there is no measured power, or several recordings are in one log. `messages`: what the log has
+/// instead.
+void require_power(const FlightData& data, const std::string& messages = "");
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,128 @@
+#include "flight/select.h"
+
+#include "flight/select/candidates.h"
+#include "flight/select/circuits.h"
+#include "flight/select/device_check.h"
+#include "flight/select/device_sum.h"
+#include "flight/select/outliers.h"
+#include "flight/select/power.h"
+#include "flight/select/throttle.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+ChosenTrack first_of(const FlightSeries& series, std::string_view name) {
+    const auto found =
+        std::ranges::find_if(series.tracks, [&](const Track& track) { return track.name == name && !track.empty(); });
+    return found == series.tracks.end() ? ChosenTrack{} : cleaned(series, *found);
+}
+
+/// The track of batteries without outliers, if it is long enough to know what is far beyond the others.
+ChosenTrack cleaned_of_batteries(const FlightSeries& series, const Track& track) {
+    constexpr std::size_t enough_samples = 30;
+    if (track.time_s.size() < enough_samples) return {within_bounds(track)};
+    return remove_outliers(track, {}, track.name == "voltage_v" ? Track{} : dropout_throttle(series, track));
+}
+
+void prepend(std::vector<std::string>& notes, std::vector<std::string> earlier) {
+    std::ranges::move(notes, std::back_inserter(earlier));
+    notes = std::move(earlier);
+}
+
+/// Batteries that the log numbers: to packs, to circuits, to their power.
+void choose_batteries(const FlightSeries& series, BatteryTracks found, FlightData& data) {
+    auto power = cleaned_of_batteries(series, found.power_w);
+    prepend(power.notes, std::move(found.power_w.notes));
+    power.not_chosen = std::move(found.power_w.not_chosen);
+    const bool is_zero = std::ranges::all_of(power.value, [](double watts) { return watts == 0.0; });
+    if (is_zero || power.time_s.size() < 2) {
+        power.not_chosen.emplace_back("the batteries' power is 0 throughout");
+        static_cast<Track&>(power) = {};
+    }
+    data.power_w = std::move(power);
+    data.energy_wh = cleaned_of_batteries(series, found.energy_wh);
+    for (auto& circuit : found.circuits) {
+        circuit.power_w = cleaned_of_batteries(series, circuit.power_w);
+        circuit.voltage_v = cleaned_of_batteries(series, circuit.voltage_v);
+        circuit.current_a = cleaned_of_batteries(series, circuit.current_a);
+        circuit.charge_ah = cleaned_of_batteries(series, circuit.charge_ah);
+    }
+    data.circuits = std::move(found.circuits);
+    data.voltage_v = {data.circuits.front().voltage_v};
+    data.current_a = {data.circuits.front().current_a};
+    data.charge_ah = {data.circuits.front().charge_ah};
+}
+
+/// The pack's current, else the sum of the consumers' currents; no voltage of consumers with different ones.
+void choose_voltage_and_current(const FlightSeries& series, FlightData& data) {
+    data.voltage_v = first_that_varies(series, "voltage_v");
+    data.current_a = first_that_varies(series, "current_a");
+    const auto reason = differing_voltages_reason(series);
+    if (!reason.empty() && data.voltage_v.source.starts_with("POWER_DEVICE")) data.voltage_v = {{}, {reason}};
+    for (const auto* message : device_messages) {
+        if (!data.current_a.empty()) break;
+        if (const auto escs = devices_of(series, "voltage_v", message); data.voltage_v.empty() && !escs.empty())
+            data.voltage_v = {escs.front().track};
+        if (message == std::string_view("POWER_DEVICE") && !reason.empty()) continue;
+        data.current_a = {sum_over_devices(devices_of(series, "current_a", message)).track};
+    }
+    data.charge_ah = first_that_varies(series, "charge_ah");
+    data.energy_wh = first_that_varies(series, "energy_wh");
+}
+
+/// A column of power in a user's CSV goes before its batteries.
+void choose_electrical(const FlightSeries& series, FlightData& data) {
+    if (!has_plain_power(series)) {
+        if (auto batteries = select_batteries(series)) return choose_batteries(series, *std::move(batteries), data);
+    }
+    data.power_w = select_power(series);
+    choose_voltage_and_current(series, data);
+}
+
+/// Those beside the chosen one, which may confirm or contradict it.
+std::vector<Track> other_altitudes(const FlightSeries& series, const Track& chosen) {
+    std::vector<Track> others;
+    for (const auto& track : series.tracks)
+        if (track.name == "altitude_m" && track.source != chosen.source) others.push_back(track);
+    return others;
+}
+
+constexpr ChosenTrack FlightData::*with_own_rule[] = {
+    &FlightData::power_w,   &FlightData::voltage_v,        &FlightData::current_a,           &FlightData::charge_ah,
+    &FlightData::energy_wh, &FlightData::throttle_percent, &FlightData::ground_speed_m_per_s};
+
+}  // namespace
+
+FlightData select_tracks(const FlightSeries& series) {
+    FlightData data;
+    // Clock, identity and kind of vehicle are the log's.
+    static_cast<FlightInfo&>(data) = series;
+    data.last_s = last_time_s(series);
+    // Monitors to packs, packs to circuits; power, voltage, current and counters.
+    choose_electrical(series, data);
+    data.throttle_percent = select_throttle(series, data.power_w);
+    // Altitude, position, speed, wind and states.
+    for (const auto& [name, member] : track_members())
+        if (std::ranges::find(with_own_rule, member) == std::end(with_own_rule))
+            data.*member = first_that_varies(series, name);
+    data.other_altitudes = other_altitudes(series, data.altitude_m);
+    data.ground_speed_m_per_s = first_of(series, "ground_speed_m_per_s");
+    if (is_constant(data.airspeed_m_per_s))  // there is no sensor
+        data.airspeed_m_per_s = {{}, std::move(data.airspeed_m_per_s.notes)};
+    return data;
+}
+
+std::optional<double> stated_ground_altitude_m(const FlightData& data) {
+    // Altitudes of a rotorcraft are above the reference on the ground.
+    if (data.altitude_m.source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    const auto logged = last_value(data.ground_altitude_m);
+    return logged ? logged : data.planned_ground_altitude_m;
+}
+
+}  // namespace flightwatt::flight

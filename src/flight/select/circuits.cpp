@@ -1,0 +1,252 @@
+#include "flight/select/circuits.h"
+
+#include "base/statistics.h"
+#include "base/units.h"
+#include "flight/select/device_sum.h"
+#include "flight/select/outliers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::flight {
+namespace {
+
+constexpr double min_power_fraction = 0.02;  // of the largest power; less is a spare input
+// Packs of as many cells are at most as far apart: 4.2 V a cell when full, 3.15 V when empty.
+constexpr double max_voltage_difference = 0.25;
+// Two sensors of one pack. Equal packs in parallel share the current less evenly, by their resistances.
+constexpr double same_voltage = 0.02;
+constexpr double same_current = 0.03;
+constexpr double same_current_by_escs = 0.15;  // these do not measure the electronics
+constexpr double same_a = 0.3;                 // noise of a sensor
+constexpr double nearly_all = 0.95;            // of the samples
+constexpr std::size_t enough_samples = 10;
+
+/// A battery monitor as logged.
+struct Monitor {
+    std::string name;    ///< "BAT 0", "BAT2"
+    std::string stated;  ///< its kind by the log's parameters, see FlightInfo::monitor_kinds
+    Track power_w;
+    Track voltage_v;
+    Track current_a;
+    Track charge_ah;
+    Track energy_wh;
+    double mean_w = 0.0;
+    double mean_v = 0.0;
+    double mean_a = 0.0;
+    std::string exclusion = {};  ///< why it is not counted; empty if it is
+
+    std::string text() const { return fmt::format("{} ({:.2f} V, {:.2f} A)", name, mean_v, mean_a); }
+};
+
+std::string message_of(const Track& track) { return track.source.substr(0, track.source.find('.')); }
+
+/// The monitor's track of that name; empty if it reports none within physical bounds.
+Track track_of(const FlightSeries& series, const Track& power, std::string_view name) {
+    const auto found = std::ranges::find_if(series.tracks, [&](const Track& track) {
+        return track.name == name && track.device == power.device && message_of(track) == message_of(power);
+    });
+    return found == series.tracks.end() ? Track{} : within_bounds(*found);
+}
+
+/// The monitors that measure a current, in the order of the log; empty without a number. Of messages without a number
+/// the first one counts.
+std::vector<Monitor> monitors_of(const FlightSeries& series) {
+    std::vector<Monitor> monitors;
+    bool is_numbered = false;
+    bool has_plain = false;
+    for (const auto& power : series.tracks) {
+        if (power.name != "power_w" || power.source.find(" * ") == std::string::npos) continue;
+        if (power.device.empty() && std::exchange(has_plain, true)) continue;
+        is_numbered = is_numbered || !power.device.empty();
+        const auto message = message_of(power);
+        const bool is_named = power.device.empty() || std::isdigit(static_cast<unsigned char>(message.back())) != 0;
+        Monitor monitor{is_named ? message : fmt::format("{} {}", message, power.device),
+                        {},
+                        within_bounds(power),
+                        track_of(series, power, "voltage_v"),
+                        track_of(series, power, "current_a"),
+                        track_of(series, power, "charge_ah"),
+                        track_of(series, power, "energy_wh")};
+        if (monitor.power_w.empty() || monitor.current_a.empty() || monitor.voltage_v.empty()) continue;
+        const auto kind = series.monitor_kinds.find(power.device.empty() ? "0" : power.device);
+        if (kind != series.monitor_kinds.end()) monitor.stated = kind->second;
+        monitor.mean_w = mean(monitor.power_w.value);
+        monitor.mean_v = mean(monitor.voltage_v.value);
+        monitor.mean_a = mean(monitor.current_a.value);
+        monitors.push_back(std::move(monitor));
+    }
+    return is_numbered ? monitors : std::vector<Monitor>{};
+}
+
+/// Whether two tracks are within `part` of each other, or `least`, at nearly all samples of the first one.
+bool agree(const Track& track, const Track& other, double part, double least) {
+    std::size_t compared = 0;
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
+        if (track.time_s[i] < other.time_s.front() || track.time_s[i] > other.time_s.back()) continue;
+        const double value = value_at(other, track.time_s[i]);
+        ++compared;
+        if (std::abs(track.value[i] - value) <= std::max(least, part * std::abs(value))) ++equal;
+    }
+    return compared >= enough_samples && static_cast<double>(equal) >= nearly_all * static_cast<double>(compared);
+}
+
+bool see_one_pack(const Monitor& monitor, const Monitor& other) {
+    const bool by_escs = monitor.stated == escs_monitor || other.stated == escs_monitor;
+    return agree(monitor.voltage_v, other.voltage_v, same_voltage, 0.0) &&
+           agree(monitor.current_a, other.current_a, by_escs ? same_current_by_escs : same_current, same_a);
+}
+
+/// Whether a monitor's power is that of a set of two or more others.
+bool is_sum_of_others(const std::vector<Monitor>& monitors, std::size_t of) {
+    constexpr std::size_t max_monitors = 6;  // the number of sets doubles with each
+    if (monitors.size() < 3 || monitors.size() > max_monitors) return false;
+    for (unsigned set = 0; set < 1U << monitors.size(); ++set) {
+        if (std::popcount(set) < 2 || (set >> of & 1U) != 0) continue;
+        Track sum{.time_s = monitors[of].power_w.time_s,
+                  .value = std::vector<double>(monitors[of].power_w.time_s.size())};
+        for (std::size_t m = 0; m < monitors.size(); ++m)
+            if ((set >> m & 1U) != 0)
+                std::ranges::transform(sum.value, resample(monitors[m].power_w, sum.time_s), sum.value.begin(),
+                                       std::plus());
+        if (agree(monitors[of].power_w, sum, same_current, same_a * monitors[of].mean_v)) return true;
+    }
+    return false;
+}
+
+/// Sets why monitors are not counted.
+void exclude(std::vector<Monitor>& monitors) {
+    const auto largest = std::ranges::max(monitors, {}, [](const Monitor& m) { return std::abs(m.mean_w); });
+    for (std::size_t m = 0; m < monitors.size(); ++m) {
+        auto& monitor = monitors[m];
+        if (std::abs(monitor.mean_w) < min_power_fraction * std::abs(largest.mean_w))
+            monitor.exclusion = "a spare input, as it draws less than 2 % of the power";
+        else if (monitors.size() > 1 && (monitor.stated == sum_monitor || is_sum_of_others(monitors, m)))
+            monitor.exclusion = "the sum of others";
+    }
+    for (std::size_t m = 1; m < monitors.size(); ++m) {
+        for (std::size_t other = 0; other < m && monitors[m].exclusion.empty(); ++other)
+            if (monitors[other].exclusion.empty() && see_one_pack(monitors[m], monitors[other]))
+                monitors[m].exclusion = fmt::format(
+                    "voltage and current of {} are the same at nearly every sample: both measure one pack, whose energy "
+                    "would be counted twice",
+                    monitors[other].name);
+    }
+}
+
+/// The packs that count, by circuit: a pack belongs to the first circuit whose largest pack has about its voltage.
+std::vector<std::vector<const Monitor*>> packs_by_circuit(const std::vector<Monitor>& monitors) {
+    std::vector<const Monitor*> packs;
+    for (const auto& monitor : monitors)
+        if (monitor.exclusion.empty()) packs.push_back(&monitor);
+    std::ranges::stable_sort(packs, std::greater(), [](const Monitor* pack) { return std::abs(pack->mean_w); });
+    std::vector<std::vector<const Monitor*>> circuits;
+    for (const auto* pack : packs) {
+        const auto circuit = std::ranges::find_if(circuits, [&](const auto& of) {
+            return std::abs(pack->mean_v - of.front()->mean_v) <= max_voltage_difference * of.front()->mean_v;
+        });
+        if (circuit == circuits.end())
+            circuits.push_back({pack});
+        else
+            circuit->push_back(pack);
+    }
+    return circuits;
+}
+
+std::string names_of(const std::vector<const Monitor*>& packs) {
+    std::vector<std::string> names;
+    for (const auto* pack : packs) names.push_back(pack->name);
+    return fmt::format("{}", fmt::join(names, " and "));
+}
+
+/// The only track, or the sum of several, whose notes go to `chosen`.
+Track sum_of(std::vector<Device> devices, ChosenTrack& chosen) {
+    auto sum = devices.size() == 1 ? DeviceSum{std::move(devices.front().track), "", {}}
+                                   : sum_over_devices(std::move(devices));
+    std::ranges::move(sum.notes, std::back_inserter(chosen.notes));
+    if (!sum.ambiguity.empty()) chosen.not_chosen.push_back(std::move(sum.ambiguity));
+    sum.track.device.clear();
+    return std::move(sum.track);
+}
+
+std::vector<Device> devices_of(const std::vector<const Monitor*>& packs, Track Monitor::*member) {
+    std::vector<Device> devices;
+    for (const auto* pack : packs) devices.push_back({pack->name, "", pack->*member, {}});
+    return devices;
+}
+
+/// The sum of the packs' counters; empty if one of several is missing or does not count.
+Track counter_of(const std::vector<const Monitor*>& packs, Track Monitor::*member, ChosenTrack& chosen) {
+    for (const auto* pack : packs) {
+        const auto& counter = pack->*member;
+        if (packs.size() == 1 || !is_constant(counter)) continue;
+        if (!counter.empty())
+            chosen.notes.push_back(fmt::format("the counter of {} stays at {:g}: the counters are not used", pack->name,
+                                               counter.value.front()));
+        return {};
+    }
+    ChosenTrack unused;
+    return sum_of(devices_of(packs, member), unused);
+}
+
+Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power) {
+    ChosenTrack unused;
+    Circuit circuit{names_of(packs),
+                    0.0,
+                    sum_of(devices_of(packs, &Monitor::power_w), power),
+                    packs.front()->voltage_v,
+                    sum_of(devices_of(packs, &Monitor::current_a), unused),
+                    counter_of(packs, &Monitor::charge_ah, power)};
+    circuit.voltage_v.device.clear();
+    if (!circuit.power_w.empty()) circuit.mean_power_w = mean(circuit.power_w.value);
+    return circuit;
+}
+
+void describe_choice(const std::vector<Monitor>& monitors, std::size_t circuits, ChosenTrack& power) {
+    std::vector<std::string> used;
+    for (const auto& monitor : monitors)
+        if (monitor.exclusion.empty()) used.push_back(monitor.text());
+    if (used.size() > 1)
+        power.notes.push_back(fmt::format("the power is the sum over the {} {}",
+                                          circuits == 1 ? "batteries" : "batteries of circuits of their own",
+                                          fmt::join(used, " and ")));
+    for (const auto& monitor : monitors)
+        if (!monitor.exclusion.empty())
+            power.notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}", monitor.text(),
+                                              monitor.exclusion, fmt::join(used, " and ")));
+}
+
+}  // namespace
+
+std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
+    auto monitors = monitors_of(series);
+    if (monitors.empty()) return std::nullopt;
+    exclude(monitors);
+    BatteryTracks found;
+    std::vector<Device> powers;
+    std::vector<const Monitor*> all;
+    for (const auto& packs : packs_by_circuit(monitors)) {
+        all.insert(all.end(), packs.begin(), packs.end());
+        found.circuits.push_back(circuit_of(packs, found.power_w));
+        powers.push_back({found.circuits.back().name, "", found.circuits.back().power_w, {}});
+    }
+    std::ranges::stable_sort(found.circuits, std::greater(),
+                             [](const Circuit& circuit) { return std::abs(circuit.mean_power_w); });
+    static_cast<Track&>(found.power_w) = sum_of(std::move(powers), found.power_w);
+    ChosenTrack unused;
+    static_cast<Track&>(found.energy_wh) = counter_of(all, &Monitor::energy_wh, unused);
+    describe_choice(monitors, found.circuits.size(), found.power_w);
+    return found;
+}
+
+}  // namespace flightwatt::flight

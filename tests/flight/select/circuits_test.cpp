@@ -1,0 +1,140 @@
+#include "flight/select/circuits.h"
+
+#include "flight/phase_statistics.h"
+#include "flight/select.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A monitor in a log of 100 s: its current is a part of the vehicle's, which rises from 1 to 20 A.
+struct Logged {
+    std::string message;
+    std::string device;
+    double volts;
+    std::function<double(double)> current_a;
+    double counter_step_ah = 0.001;
+};
+
+FlightSeries series_of(const std::vector<Logged>& monitors) {
+    FlightSeries series;
+    for (const auto* name : {"voltage_v", "current_a", "power_w", "charge_ah"}) {
+        for (const auto& [message, device, volts, current_a, counter_step_ah] : monitors) {
+            const bool is_power = name == std::string("power_w");
+            Track track{.name = name,
+                        .source = is_power ? message + ".Volt * " + message + ".Curr" : message + ".X",
+                        .device = device};
+            for (int i = 0; i < 100; ++i) {
+                const double amperes = current_a(1.0 + 0.19 * i + 0.5 * std::sin(i));
+                const double values[] = {volts, amperes, volts * amperes, counter_step_ah * i};
+                track.time_s.push_back(i);
+                track.value.push_back(values[is_power                           ? 2
+                                             : name == std::string("voltage_v") ? 0
+                                             : name == std::string("current_a") ? 1
+                                                                                : 3]);
+            }
+            series.tracks.push_back(std::move(track));
+        }
+    }
+    return series;
+}
+
+std::function<double(double)> times(double part) {
+    return [part](double amperes) { return part * amperes; };
+}
+
+double first_w(const FlightSeries& series) { return select_tracks(series).power_w.value.at(0); }
+
+TEST(Circuits, SumPacksOfOneVoltage) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(0.52)}, {"BAT", "1", 16.0, times(0.48)}}));
+    EXPECT_NEAR(data.power_w.value.at(0), 16.0, 1e-9);
+    EXPECT_NEAR(data.current_a.value.at(0), 1.0, 1e-9);
+    EXPECT_EQ(data.voltage_v.value.at(0), 16.0);
+    EXPECT_NEAR(data.charge_ah.value.at(99), 2.0 * 0.099, 1e-9);
+    ASSERT_EQ(data.circuits.size(), 1U);
+    EXPECT_EQ(data.circuits[0].name, "BAT 0 and BAT 1");
+}
+
+TEST(Circuits, SumTheSecondMonitorOfItsOwnMessage) {
+    EXPECT_NEAR(first_w(series_of({{"BAT", "", 16.0, times(0.52)}, {"BAT2", "1", 16.0, times(0.48)}})), 16.0, 1e-9);
+    EXPECT_NEAR(first_w(series_of({{"CURR", "", 16.0, times(0.52)}, {"CUR2", "1", 16.0, times(0.48)}})), 16.0, 1e-9);
+}
+
+TEST(Circuits, OfDifferentVoltagesAddTheirPowerButNotTheirCurrent) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 24.0, times(1.0)}, {"BAT", "1", 49.0, times(2.0)}}));
+    EXPECT_NEAR(data.power_w.value.at(0), 24.0 + 98.0, 1e-9);
+    EXPECT_NEAR(data.current_a.value.at(0), 2.0, 1e-9) << "of the circuit with more power";
+    EXPECT_EQ(data.voltage_v.value.at(0), 49.0);
+    const auto shares = circuit_shares(data, {});
+    ASSERT_EQ(shares.size(), 2U);
+    EXPECT_EQ(shares[0].name, "BAT 1");
+    EXPECT_NEAR(shares[0].percent, 100.0 * 98.0 / 122.0, 1e-9);
+    EXPECT_EQ(of_circuit(data, 2).voltage_v.value.at(0), 24.0);
+    EXPECT_THROW(of_circuit(data, 3), InputError);
+}
+
+TEST(Circuits, LeaveOutAMonitorThatIsTheSumOfTwoOthers) {
+    const std::vector<Logged> logged{
+        {"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.6)}, {"BAT", "2", 16.0, times(0.4)}};
+    const auto data = select_tracks(series_of(logged));
+    EXPECT_NEAR(data.power_w.value.at(0), 16.0, 1e-9);
+    EXPECT_THAT(data.power_w.notes, Contains(HasSubstr("BAT 0 (16.00 V, 10.41 A) is not counted: the sum of others")));
+}
+
+TEST(Circuits, LeaveOutAMonitorThatIsASumByItsParameter) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.2)}, {"BAT", "1", 16.0, times(0.9)}});
+    EXPECT_NEAR(first_w(series), 2.1 * 16.0, 1e-9);
+    series.monitor_kinds["0"] = sum_monitor;
+    EXPECT_NEAR(first_w(series), 0.9 * 16.0, 1e-9);
+}
+
+TEST(Circuits, CountAPackThatTwoMonitorsSeeOnceAndSaySo) {
+    const auto second = [](double part_of, double volts) {
+        return series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", volts, times(part_of)}});
+    };
+    const auto data = select_tracks(second(1.02, 16.1));
+    EXPECT_NEAR(data.power_w.value.at(0), 16.0, 1e-9);
+    EXPECT_THAT(data.power_w.notes, Contains(HasSubstr("both measure one pack")));
+    EXPECT_GT(first_w(second(0.92, 16.0)), 30.0) << "packs in parallel share the current unevenly";
+    EXPECT_GT(first_w(second(1.0, 16.5)), 30.0) << "another voltage";
+    auto by_escs = second(0.88, 16.0);
+    by_escs.monitor_kinds["1"] = escs_monitor;
+    EXPECT_NEAR(first_w(by_escs), 16.0, 1e-9);
+}
+
+TEST(Circuits, KeepTheOnlyMonitorWhoseSensorIsReversed) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(-1.0)}}));
+    EXPECT_NEAR(data.power_w.value.at(0), -16.0, 1e-9);
+    EXPECT_THAT(data.power_w.notes, Not(Contains(HasSubstr("not counted"))));
+}
+
+TEST(Circuits, DoNotUseCountersOfWhichOneStaysAtZero) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(0.6)}, {"BAT", "1", 16.0, times(0.4), 0.0}}));
+    EXPECT_TRUE(data.charge_ah.empty());
+    EXPECT_THAT(data.power_w.notes, Contains("the counter of BAT 1 stays at 0: the counters are not used"));
+}
+
+TEST(Circuits, NameASpareInput) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.019)}}));
+    EXPECT_NEAR(data.power_w.value.at(0), 16.0, 1e-9);
+    EXPECT_THAT(data.power_w.notes, Contains(HasSubstr("a spare input")));
+}
+
+TEST(Circuits, OfALogThatNumbersNoBatteryAreNone) {
+    EXPECT_FALSE(select_batteries(series_of({{"BAT", "", 16.0, times(1.0)}})));
+    EXPECT_EQ(select_tracks(series_of({{"BAT", "", 16.0, times(1.0)}})).circuits.size(), 0U);
+}
+
+}  // namespace
+}  // namespace flightwatt::flight
