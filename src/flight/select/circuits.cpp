@@ -27,7 +27,6 @@ constexpr double max_voltage_difference = 0.25;
 constexpr double same_voltage = 0.02;
 constexpr double same_current = 0.03;
 constexpr double same_current_by_escs = 0.15;  // these do not measure the electronics
-constexpr double same_a = 0.3;                 // noise of a sensor
 constexpr double nearly_all = 0.95;            // of the samples
 constexpr std::size_t enough_samples = 10;
 
@@ -88,23 +87,27 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
     return is_numbered ? monitors : std::vector<Monitor>{};
 }
 
-/// Whether two tracks are within `part` of each other, or `least`, at nearly all samples of the first one.
-bool agree(const Track& track, const Track& other, double part, double least) {
+/// Whether two tracks are within a part of each other at nearly all samples at which the second one is at least a tenth
+/// of its largest: at rest sensors have offsets, and ESCs do not measure the electronics.
+bool agree(const Track& track, const Track& other, double within) {
+    constexpr double compared_part = 0.1;
+    const auto values = resample(other, track.time_s);
+    const double largest = std::ranges::max(other.value, {}, [](double value) { return std::abs(value); });
     std::size_t compared = 0;
     std::size_t equal = 0;
-    for (std::size_t i = 0; i < track.time_s.size(); ++i) {
-        if (track.time_s[i] < other.time_s.front() || track.time_s[i] > other.time_s.back()) continue;
-        const double value = value_at(other, track.time_s[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool is_measured = track.time_s[i] >= other.time_s.front() && track.time_s[i] <= other.time_s.back();
+        if (!is_measured || std::abs(values[i]) < compared_part * std::abs(largest)) continue;
         ++compared;
-        if (std::abs(track.value[i] - value) <= std::max(least, part * std::abs(value))) ++equal;
+        if (std::abs(track.value[i] - values[i]) <= within * std::abs(values[i])) ++equal;
     }
     return compared >= enough_samples && static_cast<double>(equal) >= nearly_all * static_cast<double>(compared);
 }
 
 bool see_one_pack(const Monitor& monitor, const Monitor& other) {
     const bool by_escs = monitor.stated == escs_monitor || other.stated == escs_monitor;
-    return agree(monitor.voltage_v, other.voltage_v, same_voltage, 0.0) &&
-           agree(monitor.current_a, other.current_a, by_escs ? same_current_by_escs : same_current, same_a);
+    return agree(monitor.voltage_v, other.voltage_v, same_voltage) &&
+           agree(monitor.current_a, other.current_a, by_escs ? same_current_by_escs : same_current);
 }
 
 /// Whether a monitor's power is that of a set of two or more others.
@@ -119,7 +122,7 @@ bool is_sum_of_others(const std::vector<Monitor>& monitors, std::size_t of) {
             if ((set >> m & 1U) != 0)
                 std::ranges::transform(sum.value, resample(monitors[m].power_w, sum.time_s), sum.value.begin(),
                                        std::plus());
-        if (agree(monitors[of].power_w, sum, same_current, same_a * monitors[of].mean_v)) return true;
+        if (agree(monitors[of].power_w, sum, same_current)) return true;
     }
     return false;
 }
