@@ -37,6 +37,14 @@ TEST(ClockCheck, RefusesAClockThatRunsBackByLessThanAMinute) {
     }
 }
 
+TEST(ClockCheck, WarnsOfAClockThatIsSetBackBySeconds) {
+    const auto loaded = test::examined(with_jump(300.0, -5.0));
+    EXPECT_THAT(loaded.warnings, testing::Contains(testing::MatchesRegex(
+                                     "the clock is set back by [45]\\.[0-9] s at 300\\.[0-9] s, so that times occur "
+                                     "twice: [0-9]+ lines")));
+    EXPECT_EQ(parse_series_csv(to_csv(loaded.series), "x.csv").skipped, loaded.series.skipped);
+}
+
 TEST(ClockCheck, RefusesAStretchThatLiesOverAnother) {
     const auto text = test::damaged_sample([](test::Words& words) {
         const double time_s = number_or_nan(words[0]);

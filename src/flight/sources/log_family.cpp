@@ -142,6 +142,14 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
     return assumed;
 }
 
+double after_rollover(double utc_s) {
+    constexpr double gps_epoch_s = 315'964'800.0;
+    constexpr double first_logs_s = 1'262'304'000.0;  // 2010
+    constexpr double overflow_s = 1024.0 * 604'800.0;
+    if (!(utc_s >= gps_epoch_s)) return missing_value;
+    return utc_s + overflow_s * std::max(std::ceil((first_logs_s - utc_s) / overflow_s), 0.0);
+}
+
 double product(const std::vector<double>& values) { return values[0] * values[1]; }
 
 void sort_tracks(std::vector<Track>& tracks) {
