@@ -64,7 +64,8 @@ FlightContent content_of(const FlightSeries& series) {
 bool is_synthetic(const std::string& aircraft_name) { return boost::algorithm::icontains(aircraft_name, "synthetic"); }
 
 bool is_simulated(const std::string& aircraft_name) {
-    return aircraft_name.find("SITL") != std::string::npos || aircraft_name.find("HITL") != std::string::npos;
+    return aircraft_name.find("SITL") != std::string::npos || aircraft_name.find("HITL") != std::string::npos ||
+           aircraft_name == "NPS" || aircraft_name.ends_with(" NPS");
 }
 
 std::string describe_aircraft(const std::string& id, const std::string& name) {

@@ -41,7 +41,7 @@ inline constexpr auto unnamed_synthetic = "synthetic";
 /// Whether `flightwatt synthesize` wrote the log: its aircraft have such names.
 bool is_synthetic(const std::string& aircraft_name);
 
-/// Whether a simulator of an autopilot recorded the log: its aircraft's name has SITL or HITL.
+/// Whether a simulator of an autopilot recorded the log: its aircraft's name has SITL or HITL, or ends in the word NPS.
 bool is_simulated(const std::string& aircraft_name);
 
 /// "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "PX4 SITL (SIMULATED)", "unknown".

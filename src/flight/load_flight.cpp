@@ -44,12 +44,18 @@ telemetry::TelemetryLog read_log(const FlightFile& file) {
     return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
 }
 
-/// A synthetic log without a .log is recognised by its first line.
-void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidates) {
+/// A synthetic log without a .log is recognised by its first line, Paparazzi's simulator NPS by its own messages.
+void name_unflown(const FlightFile& file, std::vector<FlightSeries>& candidates) {
     if (file.framing()) return;
-    if (file.text().substr(0, file.text().find('\n')).find("INFO_MSG \"SYNTHETIC:") == std::string_view::npos) return;
-    for (auto& series : candidates)
-        if (series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
+    const std::string_view text = file.text();
+    const auto has = [](std::string_view in, std::string_view what) { return in.find(what) != std::string_view::npos; };
+    const bool is_synthetic = has(text.substr(0, text.find('\n')), "INFO_MSG \"SYNTHETIC:");
+    const bool is_simulated = has(text, "NPS_");
+    for (auto& series : candidates) {
+        if (is_synthetic && series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
+        if (is_simulated && has(text, fmt::format(" {} NPS_", series.aircraft_id)))
+            series.aircraft_name += series.aircraft_name.empty() ? "NPS" : " NPS";
+    }
 }
 
 /// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
@@ -92,6 +98,8 @@ void limit_work(const FlightData& data, const FlightPhases& phases) {
 std::vector<std::string> all_warnings(const FlightData& data, const FlightPhases& phases,
                                       const FlightAssessment& assessment) {
     auto warnings = selection_warnings(data);
+    if (is_simulated(data.aircraft_name))
+        warnings.push_back(fmt::format("a simulator flew it ({}): its power is simulated too", data.aircraft_name));
     if (!assessment.lacks_power.empty())
         warnings.push_back(assessment.lacks_power + ": the energy of its phases is unknown");
     for (const auto* more : {&phases.warnings, &assessment.power.warnings})
@@ -142,7 +150,8 @@ std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
     std::vector<FlightSeries> candidates;
     for (const auto& sender : senders) {
         candidates.push_back(flight_series(log, sender));
-        candidates.back().skipped = skipped;
+        auto& of_sender = candidates.back().skipped;
+        of_sender.insert(of_sender.begin(), skipped.begin(), skipped.end());
     }
     return candidates;
 }
@@ -161,7 +170,10 @@ std::string error_of_definitions(const std::filesystem::path& log, bool for_fram
 
 FlightSeries read_autopilot(const FlightFile& file) {
     const auto format = file.autopilot().value();
-    const auto& family = format == telemetry::AutopilotFormat::ulog ? px4_family() : ardupilot_family();
+    using telemetry::AutopilotFormat;
+    const auto& family = format == AutopilotFormat::ulog     ? px4_family()
+                         : format == AutopilotFormat::sdlog2 ? sdlog2_family()
+                                                             : ardupilot_family();
     return family_series(read_autopilot_log(file.text(), format, file.path(), family_messages(family)), family);
 }
 
@@ -180,12 +192,12 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
         for (const auto& sender : log.senders) ids.push_back(sender.id);
         if (!aircraft_id) {
             candidates = all_candidates(std::move(log));
-            name_synthetic(file, candidates);
+            name_unflown(file, candidates);
             return candidates;
         }
         if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
             candidates.push_back(flight_series(log, *aircraft_id));
-            name_synthetic(file, candidates);
+            name_unflown(file, candidates);
             return candidates;
         }
     }

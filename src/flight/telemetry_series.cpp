@@ -19,19 +19,23 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr double week_s = 604'800.0;
 constexpr double restart_s = 60.0;
 constexpr double late_s = 2.0;
 constexpr std::size_t enough_late_rows = 10;
+constexpr std::size_t few_late_rows = 3;
 constexpr double hole_intervals = 1.5;
 constexpr std::size_t min_intervals = 5;
 constexpr std::size_t max_intervals = 100;
 
-bool has_late_rows(const telemetry::MessageTable& table, double later_than_s) {
+/// The first row that is later in the file than its time by more than 2 s: the latest time before it, and its own.
+std::optional<std::pair<double, double>> first_late_row(const telemetry::MessageTable& table) {
     double latest_s = -std::numeric_limits<double>::infinity();
-    return std::ranges::any_of(table.time_s, [&](double time_s) {
+    for (const double time_s : table.time_s) {
         latest_s = std::max(latest_s, time_s);
-        return latest_s - time_s > later_than_s;
-    });
+        if (latest_s - time_s > late_s) return std::pair(latest_s, time_s);
+    }
+    return std::nullopt;
 }
 
 /// A row seen before in the file, and the earliest time that shows it to be late (infinite: none).
@@ -78,7 +82,7 @@ struct ClockFaults {
 };
 
 void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
-    if (!has_late_rows(table, late_s)) return;
+    if (!first_late_row(table)) return;
     // Several devices report at one time and in any order.
     const bool may_overlap = table.message != "ESC" && table.message != "POWER_DEVICE";
     SeenRows seen;
@@ -175,6 +179,8 @@ const LogFamily& paparazzi_family() {
             {"mode", "PPRZ_MODE", {{"ap_mode"}}, latest},
             {"block", "NAVIGATION", {{"cur_block"}}, latest},
             {"rover_mode", "ROVER_STATUS", {{"ap_mode"}}, latest},
+            {"fix", "GPS", {{"mode"}}, latest},
+            {"fix", "GPS_INT", {{"fix"}}, latest},
             {"ground_altitude_m", "NAVIGATION_REF", {{"ground_alt", "m"}}, latest},
             // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
             {"throttle_percent", "ROTORCRAFT_FP", {{"thrust"}}, mean, percent_of_command},
@@ -186,7 +192,7 @@ const LogFamily& paparazzi_family() {
             {"latitude_deg", "GPS", utm, mean, utm_latitude_deg, nullptr, "GPS.utm"},
             {"longitude_deg", "GPS", utm, mean, utm_longitude_deg, nullptr, "GPS.utm"},
         },
-        {},
+        {{"GPS", nullptr, "mode", min_fix}, {"GPS_INT", nullptr, "fix", min_fix}},
         nullptr,
         {{"ESC", {"amps", "power", "node_id", "motor_id"}},
          {"POWER_DEVICE", {"node_id", "circuit", "current"}},
@@ -220,14 +226,22 @@ void add_configuration(FlightSeries& series, const telemetry::TelemetryLog& log)
     series.current_origin = aircraft.current_origin;
 }
 
-/// Unix time of the log's second 0: by the first time of this century.
-std::optional<double> start_clock_s(const std::vector<Track>& tracks) {
-    constexpr double first_s = 946'684'800.0;   // 2000
+/// Sets the Unix time of the log's second 0, by the first time before 2100.
+void set_start_clock(FlightSeries& series) {
     constexpr double last_s = 4'102'444'800.0;  // 2100
-    for (const auto& track : tracks)
-        for (std::size_t i = 0; track.name == utc_track && i < track.value.size(); ++i)
-            if (track.value[i] > first_s && track.value[i] < last_s) return track.value[i] - track.time_s[i];
-    return std::nullopt;
+    for (const auto& track : series.tracks) {
+        for (std::size_t i = 0; track.name == utc_track && i < track.value.size(); ++i) {
+            const double utc_s = after_rollover(track.value[i]);
+            if (!(utc_s < last_s)) continue;
+            series.start_clock_s = utc_s - track.time_s[i];
+            if (utc_s != track.value[i])
+                series.notes.push_back(
+                    fmt::format("the date of {} is {:.0f} weeks too early, as its counter of weeks "
+                                "overflowed: they are added",
+                                track.source, (utc_s - track.value[i]) / week_s));
+            return;
+        }
+    }
 }
 
 }  // namespace
@@ -241,6 +255,18 @@ std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sende
                       [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
     const auto& shown = faults.overlaps[enough_late_rows - 1];
     return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
+}
+
+std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender) {
+    ClockFaults faults;
+    for (const auto& table : sender.tables) add_faults(table, faults);
+    auto& overlaps = faults.overlaps;
+    if (overlaps.size() < few_late_rows) return std::nullopt;
+    std::ranges::sort(overlaps, {}, &ClockRestart::visible_from_s);
+    const auto [from_s, to_s] = first_late_row(*sender.table(overlaps.front().message)).value();
+    return telemetry::SkippedLines{
+        fmt::format("the clock is set back by {:.1f} s at {:.1f} s, so that times occur twice", from_s - to_s, from_s),
+        {{overlaps[few_late_rows - 1].visible_from_s, overlaps.size(), 0}}};
 }
 
 std::vector<telemetry::MessageRequest> flight_messages() {
@@ -269,6 +295,7 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
     const auto sender = std::ranges::find(log.senders, aircraft_id, &telemetry::SenderLog::id);
     if (sender == log.senders.end()) return series;
     series.clock_restart = find_clock_restart(*sender);
+    if (auto step = find_clock_step(*sender)) series.skipped.push_back(*std::move(step));
     series.tracks = logged_tracks(*sender);
     return series;
 }
@@ -282,11 +309,12 @@ FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family
     series.skipped = std::move(log.skipped);
     series.current_origin = CurrentOrigin::sensor;
     series.clock_restart = find_clock_restart(sender);
+    if (auto step = find_clock_step(sender)) series.skipped.push_back(*std::move(step));
     family.describe(read, series);
     const auto is_synthetic_text = [](const std::string& text) { return text.find("SYNTHETIC:") != std::string::npos; };
     if (std::ranges::any_of(read.facts.texts, is_synthetic_text)) series.aircraft_name += "_synthetic";
     const auto assumed = add_family_tracks(sender, family, series.firmware, series.tracks);
-    series.start_clock_s = start_clock_s(series.tracks);
+    set_start_clock(series);
     std::erase_if(series.tracks, [](const Track& track) { return track.name == utc_track; });
     sort_tracks(series.tracks);
     if (family.unstated_units == LogFamily::Unstated::noted && !assumed.empty())

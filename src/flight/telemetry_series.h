@@ -17,6 +17,9 @@ struct LogFamily;
 /// they left, and repeated lines are equal.
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender);
 
+/// Rows of a clock that was set back by seconds and runs over the same times again: fewer than make a restart.
+std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender);
+
 /// The messages and fields of a FlightSeries.
 std::vector<telemetry::MessageRequest> flight_messages();
 

@@ -24,6 +24,7 @@ bool defines_formats(std::string_view bytes) {
 
 std::string_view to_string(AutopilotFormat format) {
     if (format == AutopilotFormat::ulog) return "PX4 ULog";
+    if (format == AutopilotFormat::sdlog2) return "PX4 sdlog2 log";
     return format == AutopilotFormat::dataflash ? "ArduPilot DataFlash log" : "ArduPilot DataFlash log as text";
 }
 
@@ -31,7 +32,7 @@ std::optional<AutopilotFormat> detect_autopilot_format(std::string_view bytes) {
     constexpr std::size_t searched_bytes = 1 << 16;
     bytes = bytes.substr(0, searched_bytes);
     if (is_ulog(bytes)) return AutopilotFormat::ulog;
-    if (is_dataflash(bytes)) return AutopilotFormat::dataflash;
+    if (is_dataflash(bytes)) return is_sdlog2(bytes) ? AutopilotFormat::sdlog2 : AutopilotFormat::dataflash;
     if (defines_formats(bytes)) return AutopilotFormat::dataflash_text;
     return std::nullopt;
 }

@@ -13,6 +13,7 @@ namespace flightwatt::telemetry {
 enum class AutopilotFormat {
     dataflash,       ///< ArduPilot, binary
     dataflash_text,  ///< the same as lines
+    sdlog2,          ///< PX4 until 2017, of the same form as DataFlash
     ulog,            ///< PX4
 };
 

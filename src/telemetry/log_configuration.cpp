@@ -145,7 +145,7 @@ std::string flight_name(const std::filesystem::path& data_file) {
         if (found != endings.end()) name.resize(name.size() - found->size());
     };
     strip_first({".gz", ".bz2", ".xz", ".zst"});
-    strip_first({".series.csv", ".data", ".csv", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN", ".ulg"});
+    strip_first({".series.csv", ".data", ".csv", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN", ".ulg", ".px4log"});
     return name;
 }
 

@@ -44,8 +44,9 @@ std::string_view to_string(SkippedLines::Unit unit) {
 std::string describe(const SkippedLines& skipped) {
     const auto unit = to_string(skipped.unit);
     const auto place = skipped.unit == SkippedLines::Unit::line ? "line" : "byte";
-    return fmt::format("{}: {} {}{}, first at {} {}", skipped.reason, skipped.count(), unit,
-                       skipped.count() == 1 ? "" : "s", place, skipped.first_line());
+    const auto first = skipped.first_line();
+    return fmt::format("{}: {} {}{}{}", skipped.reason, skipped.count(), unit, skipped.count() == 1 ? "" : "s",
+                       first == 0 ? "" : fmt::format(", first at {} {}", place, first));
 }
 
 }  // namespace flightwatt::telemetry

@@ -98,6 +98,8 @@ TEST(Aircraft, AreOneUnlessIdNameOrTheirBeingRealTellsThemApart) {
 TEST(Aircraft, OfASimulatorAreLabelled) {
     EXPECT_TRUE(is_simulated("ArduPlane SITL"));
     EXPECT_FALSE(is_simulated("ArduPlane"));
+    EXPECT_TRUE(is_simulated("Bebop NPS"));
+    EXPECT_FALSE(is_simulated("NPS_Zagi")) << "NPS may be a part of a name";
     EXPECT_EQ(describe_aircraft("1", "PX4 HITL"), "1 PX4 HITL (SIMULATED)");
 }
 

@@ -58,6 +58,18 @@ TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }), HasSubstr("has no measured power"));
 }
 
+TEST(LoadFlight, LabelsAircraftOfTheSimulatorNps) {
+    const FlightFile file(test::write_text(test::scratch_dir() / "x.data",
+                                           "1 20 ENERGY 60 12. 1. 12. 0. 0.\n1 20 NPS_RATE_ATTITUDE 1 2 3 4 5 6\n"
+                                           "1 7 ENERGY 60 12. 1. 12. 0. 0.\n1 7 INFO_MSG \"NPS_\"\n"));
+    const auto candidates = read_candidates(file, std::nullopt);
+    ASSERT_EQ(candidates.size(), 2U);
+    EXPECT_EQ(candidates[0].aircraft_name, "NPS");
+    EXPECT_EQ(candidates[1].aircraft_name, "");
+    EXPECT_EQ(read_candidates(file, "20").at(0).aircraft_name, "NPS");
+    EXPECT_EQ(simulation_reason("NPS", {}), "a simulator flew it (NPS); --simulated uses such flights");
+}
+
 TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
     const auto series = unmeasured_flight();
     const auto again = parse_series_csv(to_csv(series), series.file);

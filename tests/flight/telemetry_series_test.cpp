@@ -37,6 +37,14 @@ TEST(ClockCheck, RefusesAClockThatRunsBackByLessThanAMinute) {
     }
 }
 
+TEST(ClockCheck, WarnsOfAClockThatIsSetBackBySeconds) {
+    const auto loaded = test::examined(with_jump(300.0, -5.0));
+    EXPECT_THAT(loaded.warnings, testing::Contains(testing::MatchesRegex(
+                                     "the clock is set back by [45]\\.[0-9] s at 300\\.[0-9] s, so that times occur "
+                                     "twice: [0-9]+ lines")));
+    EXPECT_EQ(parse_series_csv(to_csv(loaded.series), "x.csv").skipped, loaded.series.skipped);
+}
+
 TEST(ClockCheck, RefusesAStretchThatLiesOverAnother) {
     const auto text = test::damaged_sample([](test::Words& words) {
         const double time_s = number_or_nan(words[0]);
@@ -278,6 +286,20 @@ TEST(TelemetrySeries, UsesAltitudeThatVaries) {
                                       "1 20 ROTORCRAFT_FP 0 0 256 0 0 0 0 0 0 0 0 0 0 4800 1\n"
                                       "2 20 ROTORCRAFT_FP 0 0 512 0 0 0 0 0 0 0 0 0 0 4800 2\n");
     EXPECT_THAT(on_power_clock(rotorcraft, "altitude_m"), ElementsAre(1, 2));
+}
+
+TEST(TelemetrySeries, PositionsWithoutAFixDoNotCount) {
+    const auto row = [](int time_s, int mode, int alt_cm) {
+        return fmt::format("{0} 20 ENERGY 0 12. 1. 12. 0. 0.\n{0} 20 GPS {1} 1 1 0 {2} 0 0 1 1 31 0\n", time_s, mode,
+                           alt_cm);
+    };
+    const auto series = series_of(row(1, 0, 900000) + row(2, 3, 20000) + row(3, 3, 21000) + row(4, 2, 900000));
+    EXPECT_THAT(select_track(series, "altitude_m").value, ElementsAre(20, 21));
+    EXPECT_THAT(select_track(series, "altitude_m").time_s, ElementsAre(2, 3));
+    const auto fix = select_track(series, "fix");
+    EXPECT_EQ(fix.source, "GPS.mode");
+    EXPECT_THAT(fix.time_s, ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(fix.value, ElementsAre(0, 1, 1, 0));
 }
 
 class ReadFlight : public testing::Test {

@@ -29,8 +29,10 @@ double utc_of_gps(const std::vector<double>& row) {
     constexpr double year_2017_s = 1'483'228'800.0;
     constexpr double july_2015_s = 1'435'708'800.0;
     constexpr double leap_s = 16.0;  // from July 2012 on
+    if (!(row[0] > 0.0)) return no_value;
     const double utc_s = gps_epoch_s + row[0] * week_s + row[1] * units::milli - leap_s;
-    return row[0] > 0.0 ? utc_s - (utc_s > july_2015_s ? 1.0 : 0.0) - (utc_s > year_2017_s ? 1.0 : 0.0) : no_value;
+    const double date_s = after_rollover(utc_s);
+    return utc_s - (date_s > july_2015_s ? 1.0 : 0.0) - (date_s > year_2017_s ? 1.0 : 0.0);
 }
 
 /// A battery monitor: BAT with instances, or BAT2 and CUR2 of 3.4 to 4.0. Up to 3.2.1 the whole numbers of CURR are
@@ -97,6 +99,7 @@ std::vector<FamilyTrack> ardupilot_tracks() {
                       {"heading_deg", "ATT", {{"Yaw", "deg"}}, latest},
                       {"course_deg", "GPS", {{"GCrs", "deg"}}, latest},
                       {"climb_m_per_s", "CTUN", {{"CRt", "m/s", "cm/s"}}},
+                      {"climb_m_per_s", "CTUN", {{"CRate", "m/s", "cm/s"}}},
                       {"climb_m_per_s", "GPS", {{"VZ", "-1m/s"}}},
                       {"roll_deg", "ATT", {{"Roll", "deg"}}, latest},
                       {"throttle_percent", "CTUN", {{"ThO", "%"}}, Merge::mean, nullptr, "fixedwing"},
@@ -112,6 +115,7 @@ std::vector<FamilyTrack> ardupilot_tracks() {
                       {"armed", "EV", {{"Id"}}, latest, switched<10, 11>},
                       {"landed", "EV", {{"Id"}}, latest, switched<18, 28>},
                       {"landed", "STAT", {{"isFlying"}}, latest, [](const auto& flying) { return 1.0 - flying[0]; }},
+                      {"fix", "GPS", {{"Status"}}, latest},
                   });
     return tracks;
 }
@@ -141,9 +145,21 @@ std::map<std::string, std::string> monitor_kinds(const std::map<std::string, dou
     return kinds;
 }
 
+/// The kind of vehicle by the number of its software; empty if no parameter states it.
+std::string vehicle_of_parameters(const std::map<std::string, double>& parameters) {
+    static const std::map<double, std::string> vehicles{
+        {0.0, "Plane"}, {10.0, "Copter"}, {20.0, "Rover"}, {40.0, "Sub"}};
+    const auto type = parameters.find("SYSID_SW_TYPE");
+    const auto found = type == parameters.end() ? vehicles.end() : vehicles.find(type->second);
+    return found == vehicles.end() ? "" : found->second;
+}
+
 void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series) {
-    // "APM:Copter V3.4.4", "ArduCopter V3.6.8"; the serial number of the board is "00310019 3138510E 35363631"
-    const auto vehicle = found_in_texts(log.facts, "(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
+    // "APM:Copter V3.4.4", "ArduCopter V3.6.8", "APMrover2 v2.50"; the serial number of the board is
+    // "00310019 3138510E 35363631"
+    auto vehicle = found_in_texts(log.facts, "(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
+    if (!found_in_texts(log.facts, "APM(rover)").empty()) vehicle = "Rover";
+    if (vehicle.empty()) vehicle = vehicle_of_parameters(log.facts.parameters);
     series.aircraft_id = found_in_texts(log.facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
     std::ranges::replace(series.aircraft_id, ' ', '-');
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
@@ -166,7 +182,7 @@ const LogFamily& ardupilot_family() {
                                    {"BAT", "Inst"},
                                    {"ESC", "Instance"},
                                    {"BARO", "I"},
-                                   {"GPS", "I", "Status", 3.0},
+                                   {"GPS", "I", "Status", min_fix},
                                    {"ARSP", "I"},
                                    {"XKF2", "C"},
                                    {"NKF2", "C"}},

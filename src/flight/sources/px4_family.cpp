@@ -53,6 +53,7 @@ const std::vector<FamilyTrack>& px4_tracks() {
     static const std::vector<FamilyTrack> tracks{
         {"power_w", "battery_status", {{"voltage_v", "V"}, current}, mean, product},
         {"altitude_m", "vehicle_air_data", {{"baro_alt_meter", "m"}}},
+        {"altitude_m", "sensor_combined", {{"baro_alt_meter", "m"}}},
         {"altitude_m", "vehicle_global_position", {{"alt", "m"}}},
         {"altitude_m", "vehicle_local_position", {{"z", "-1m"}}},
         {"altitude_m", "vehicle_gps_position", {{"altitude_msl_m", "m"}}},
@@ -80,6 +81,7 @@ const std::vector<FamilyTrack>& px4_tracks() {
         {"climb_m_per_s", "vehicle_local_position", {{"vz", "-1m/s"}}},
         {"mode", "vehicle_status", {{"nav_state"}}, latest},
         {"landed", "vehicle_land_detected", {{"landed"}}, latest},
+        {"fix", "vehicle_gps_position", {{"fix_type"}}, latest},
         {"ground_speed_m_per_s", "vehicle_local_position", velocity, mean, speed_of},
         {"course_deg", "vehicle_local_position", velocity, latest, course_of},
         {"heading_deg", "vehicle_attitude", quaternion, latest, heading_of},
@@ -89,6 +91,49 @@ const std::vector<FamilyTrack>& px4_tracks() {
         {"throttle_percent", "vehicle_thrust_setpoint", {{"xyz[0]"}, {"xyz[1]"}, {"xyz[2]"}}, mean, percent_of_thrust},
         {"armed", "vehicle_status", {{"arming_state"}}, latest, is_armed},
         {utc_track, "vehicle_gps_position", {{"time_utc_usec", "1e-6s"}}, latest},
+    };
+    return tracks;
+}
+
+const std::vector<FamilyTrack>& sdlog2_tracks() {
+    constexpr auto mean = Merge::mean;
+    constexpr auto latest = Merge::latest;
+    const FamilySource current{"C", "A", nullptr, no_sensor};
+    const std::vector<FamilySource> velocity{{"VelN"}, {"VelE"}};
+    static const std::vector<FamilyTrack> tracks{
+        {"power_w", "BATT", {{"V", "V"}, current}, mean, product},
+        {"altitude_m", "SENS", {{"BaroAlt", "m"}}},
+        {"altitude_m", "GPOS", {{"Alt", "m"}}},
+        {"altitude_m", "LPOS", {{"Z", "-1m"}}},
+        {"altitude_m", "GPS", {{"Alt", "m"}}},
+        {"voltage_v", "BATT", {{"V", "V"}}},
+        {"current_a", "BATT", {current}},
+        {"charge_ah", "BATT", {{"Discharged", "mAh", nullptr, no_sensor}}, latest},
+        {"east_m", "LPOS", {{"Y", "m"}}},
+        {"north_m", "LPOS", {{"X", "m"}}},
+        {"airspeed_m_per_s", "AIRS", {{"IAS", "m/s"}}},
+        {"airspeed_m_per_s", "AIRS", {{"IndSpeed", "m/s"}}},
+        {"wind_east_m_per_s", "WIND", {{"Y", "m/s"}}},
+        {"wind_north_m_per_s", "WIND", {{"X", "m/s"}}},
+        {"latitude_deg", "GPS", {{"Lat", "deg"}}, latest},
+        {"latitude_deg", "GPOS", {{"Lat", "deg"}}, latest},
+        {"longitude_deg", "GPS", {{"Lon", "deg"}}, latest},
+        {"longitude_deg", "GPOS", {{"Lon", "deg"}}, latest},
+        {"ground_speed_m_per_s", "GPOS", velocity, mean, speed_of},
+        {"ground_speed_m_per_s", "LPOS", {{"VX"}, {"VY"}}, mean, speed_of},
+        {"course_deg", "GPOS", velocity, latest, course_of},
+        {"climb_m_per_s", "LPOS", {{"VZ", "-1m/s"}}},
+        {"heading_deg", "ATT", {{"Yaw", "rad"}}, latest},
+        {"roll_deg", "ATT", {{"Roll", "rad"}}, latest},
+        {"throttle_percent", "ATTC", {{"Thrust"}}, mean, percent_of_fraction},
+        {"mode", "STAT", {{"NavState"}}, latest},
+        {"mode", "STAT", {{"MainState"}}, latest},
+        {"armed", "STAT", {{"ArmS"}}, latest, is_armed},
+        {"armed", "STAT", {{"ArmState"}}, latest, is_armed},
+        {"landed", "LAND", {{"Landed"}}, latest},
+        {"landed", "STAT", {{"Landed"}}, latest},
+        {"fix", "GPS", {{"Fix"}}, latest},
+        {utc_track, "GPS", {{"GPSTime", "1e-6s"}}, latest},
     };
     return tracks;
 }
@@ -133,10 +178,15 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
 
 }  // namespace
 
+const LogFamily& sdlog2_family() {
+    static const LogFamily family{sdlog2_tracks(), {{"GPS", nullptr, "Fix", min_fix}}, describe_px4};
+    return family;
+}
+
 const LogFamily& px4_family() {
     static const LogFamily family{px4_tracks(),
                                   {{"battery_status", "multi_id"},
-                                   {"vehicle_gps_position", "multi_id", "fix_type", 3.0},
+                                   {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
                                    {"vehicle_air_data", "multi_id"},
                                    {"airspeed", "multi_id"},
                                    {"wind_estimate", "multi_id"},

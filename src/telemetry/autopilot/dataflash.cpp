@@ -19,6 +19,8 @@ constexpr std::string_view header = "\xA3\x95";
 constexpr std::size_t header_bytes = 3;
 constexpr std::uint8_t format_type = 128;
 constexpr std::size_t format_bytes = 89;
+constexpr double ms_per_s = 1e3;
+constexpr std::string_view clock_of_sdlog2 = "TIME";  ///< of the messages that follow
 
 /// Type of a field by its letter; a text has many characters.
 struct FieldLetters {
@@ -75,10 +77,10 @@ DataflashFormat make_format(std::string_view name, std::size_t length, std::stri
         offset += found->elements * size_of(found->type);
     }
     format.is_usable = is_known && offset == length && columns.empty();
-    constexpr double ms_per_s = 1e3;
     constexpr double us_per_s = 1e6;
-    for (const auto& [column, ticks] :
-         {std::pair{"TimeUS", us_per_s}, {name.starts_with("GPS") ? "T" : "TimeMS", ms_per_s}}) {
+    format.is_clock = name == clock_of_sdlog2;
+    for (const auto& [column, ticks] : {std::pair{format.is_clock ? "StartTime" : "TimeUS", us_per_s},
+                                        {name.starts_with("GPS") ? "T" : "TimeMS", ms_per_s}}) {
         if (format.clock) break;
         format.clock = format.index_of(column);
         format.ticks_per_s = ticks;
@@ -154,7 +156,8 @@ class DataflashReader {
     }
 
     void finish() {
-        for (auto& table : rows_.end()) apply_units(table);
+        rows_.end();
+        for (const auto& [name, type] : types_) apply_units(type);
         for (const auto& format : formats_) rows_.list(format);
     }
 
@@ -182,21 +185,45 @@ class DataflashReader {
         if (known.name == name && known.bytes == length && known.letters == letters && known.columns == columns) return;
         auto format = make_format(name, length, letters, columns);
         if (known.is_usable && !format.is_usable) return;
+        for (const auto& defined : {known.name, format.name})
+            if (const auto at = types_.find(defined); at != types_.end()) redefine(at->second);
         rows_.list(known);
+        types_.erase(known.name);
         known = std::move(format);
         has_formats_ = true;
         has_boot_clock_ = has_boot_clock_ || (known.is_usable && known.clock);
-        if (known.is_usable) rows_.bind(known);
+        if (!known.is_usable) return;
+        rows_.bind(known);
+        types_[known.name] = type;
     }
 
-    /// The message's own time, else that of the message before it; the oldest logs have a time in GPS messages alone.
-    double time_of(const DataflashMessage& message) const {
-        constexpr double ms_per_s = 1e3;
+    /// Applies a definition's units to its rows before the message is defined again, and keeps them by field.
+    void redefine(std::size_t type) {
+        apply_units(type);
+        const auto letters = unit_letters_.find(type);
+        if (letters == unit_letters_.end()) return;
+        const auto& [units, multipliers] = letters->second;
+        const auto& format = formats_[type];
+        for (std::size_t i = 0; i < std::min(format.fields.size(), units.size()); ++i)
+            earlier_letters_[{format.name, format.fields[i].name}] = {units[i],
+                                                                      i < multipliers.size() ? multipliers[i] : '-'};
+        unit_letters_.erase(letters);
+    }
+
+    /// The message's own time; std::nullopt if it has none. The oldest logs have one in GPS messages alone: that of the
+    /// week, which begins again on Sunday.
+    std::optional<double> time_of(const DataflashMessage& message) const {
+        constexpr double week_s = 604'800.0;
         if (message.format.clock) return message.number(*message.format.clock) / message.format.ticks_per_s;
-        if (!has_boot_clock_ && message.format.name == "GPS")
-            for (const auto* field : {"TimeMS", "Time"})
-                if (const double week_ms = message.number(field); week_ms > 0.0) return week_ms / ms_per_s;
-        return rows_.last_s();
+        if (has_boot_clock_ || message.format.name != "GPS") return std::nullopt;
+        for (const auto* field : {"TimeMS", "Time"}) {
+            const double week_ms = message.number(field);
+            if (!(week_ms > 0.0)) continue;
+            const double time_s = week_ms / ms_per_s;
+            const double weeks = std::round((rows_.last_s() - time_s) / week_s);
+            return weeks > 0.0 ? time_s + weeks * week_s : time_s;
+        }
+        return std::nullopt;
     }
 
     void on_message(const DataflashMessage& message, std::size_t offset) {
@@ -223,8 +250,10 @@ class DataflashReader {
 
     void read_line(std::string_view line, std::size_t index) {
         constexpr std::size_t format_words = 4;
+        constexpr std::size_t max_preamble = 20;
         auto rest = trimmed(line);
         if (rest.empty()) return;
+        const auto whole = rest;
         const auto name = take_word(rest, ',');
         words_.clear();
         if (name == "FMT") {
@@ -234,54 +263,71 @@ class DataflashReader {
             if (!type || !length) return rows_.skip(index, 1);
             return define(*type, *length, words_[2], words_[3], trimmed(rest));
         }
-        const auto format = std::ranges::find(formats_, name, &LoggedMessage::name);
-        if (name.empty() || format == formats_.end()) {
-            if (has_formats_) rows_.skip(index, 1);
+        const auto type = types_.find(name);
+        if (type == types_.end()) {
+            if (has_formats_) return rows_.skip(index, 1);
+            if (rows_.facts().texts.size() < max_preamble) rows_.facts().texts.emplace_back(whole);
             return;
         }
+        auto* const format = &formats_[type->second];
         const auto columns = format->fields.size();
         while (!rest.empty() && words_.size() < columns) {
             const bool is_last = words_.size() + 1 == columns && format->ends_in_text();
             words_.push_back(trimmed(is_last ? std::exchange(rest, {}) : take_word(rest, ',')));
         }
         if (words_.size() + 1 == columns && format->ends_in_text()) words_.emplace_back();  // an empty one
-        if (!format->is_usable || words_.size() != columns || !trimmed(rest).empty()) return rows_.skip(index, 1);
+        if (words_.size() != columns || !trimmed(rest).empty()) return rows_.skip(index, 1);
         ++format->count;
         on_message({*format, {}, &words_}, index);
     }
 
-    /// Converts the columns whose unit the log states.
-    void apply_units(MessageTable& table) const {
-        const auto format = std::ranges::find_if(
-            formats_, [&](const DataflashFormat& known) { return known.is_usable && known.name == table.message; });
-        if (format == formats_.end()) return;
-        const auto letters = unit_letters_.find(static_cast<std::size_t>(format - formats_.begin()));
-        if (letters == unit_letters_.end()) return;
-        const auto& [unit_ids, multiplier_ids] = letters->second;
+    /// Letters of the unit and the multiplier of a field; those of an earlier definition if this one has none.
+    std::optional<std::pair<char, char>> letters_of(std::size_t type, std::size_t field) const {
+        const auto letters = unit_letters_.find(type);
+        if (letters == unit_letters_.end()) {
+            const auto& format = formats_[type];
+            const auto earlier = earlier_letters_.find({format.name, format.fields[field].name});
+            return earlier == earlier_letters_.end() ? std::nullopt : std::optional(earlier->second);
+        }
+        const auto& [units, multipliers] = letters->second;
+        if (field >= units.size()) return std::nullopt;
+        return std::pair(units[field], field < multipliers.size() ? multipliers[field] : '-');
+    }
+
+    /// Converts the columns whose unit the log states, from the first row that is not converted yet.
+    void apply_units(std::size_t type) {
+        const auto& format = formats_[type];
+        if (!format.table) return;
+        auto& table = rows_.tables()[*format.table];
+        const auto first = static_cast<std::ptrdiff_t>(std::exchange(converted_[*format.table], table.time_s.size()));
         for (auto& column : table.columns) {
-            const auto index = format->index_of(column.field);
-            if (!index || *index >= unit_ids.size()) continue;
-            const auto label = labels_.find(unit_ids[*index]);
+            const auto index = format.index_of(column.field);
+            const auto letters = index ? letters_of(type, *index) : std::nullopt;
+            if (!letters) continue;
+            const auto label = labels_.find(letters->first);
             const auto unit = label == labels_.end() ? std::nullopt : units::parse_unit(label->second);
             if (!unit) continue;
             column.quantity = unit->quantity;
             double factor = unit->factor;
-            if (format->fields[*index].factor == 1.0 && *index < multiplier_ids.size())
-                if (const auto known = multipliers_.find(multiplier_ids[*index]);
+            if (format.fields[*index].factor == 1.0)
+                if (const auto known = multipliers_.find(letters->second);
                     known != multipliers_.end() && known->second > 0.0)
                     factor *= known->second;
-            if (factor != 1.0)
-                for (auto& value : column.values) value *= factor;
+            if (factor == 1.0) continue;
+            std::for_each(column.values.begin() + first, column.values.end(), [&](double& value) { value *= factor; });
         }
     }
 
     RowCollector& rows_;
-    std::vector<DataflashFormat> formats_;  ///< by type
-    bool has_formats_ = false;              ///< before, a text has a preamble
+    std::vector<DataflashFormat> formats_;                   ///< by type
+    std::map<std::string, std::size_t, std::less<>> types_;  ///< by name, the latest definition that is usable
+    bool has_formats_ = false;                               ///< before, a text has a preamble
     bool has_boot_clock_ = false;
     std::map<char, std::string> labels_;
     std::map<char, double> multipliers_;
     std::map<std::size_t, std::pair<std::string, std::string>> unit_letters_;  ///< and of multipliers, by type
+    std::map<std::pair<std::string, std::string>, std::pair<char, char>> earlier_letters_;  ///< by message and field
+    std::map<std::size_t, std::size_t> converted_;                                          ///< rows of each table
     std::vector<std::string_view> words_;
 };
 
@@ -294,6 +340,11 @@ bool is_dataflash(std::string_view bytes) {
         if (at == 0 || behind.starts_with(header)) return true;
     }
     return false;
+}
+
+bool is_sdlog2(std::string_view bytes) {
+    constexpr std::string_view name_and_letters("TIMEQ\0", 6);
+    return bytes.find(name_and_letters) != std::string_view::npos;
 }
 
 void read_dataflash(std::string_view bytes, bool as_text, RowCollector& rows) {

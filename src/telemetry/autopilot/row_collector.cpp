@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -14,9 +17,12 @@ namespace {
 constexpr double unknown_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double after_last_s = std::numeric_limits<double>::infinity();
 
+constexpr double max_ahead_s = 10.0;
+constexpr std::size_t damaged_time = 0;  // details of SkipReason::no_time
+constexpr std::size_t without_time = 1;
+
 bool continues_clock(double time_s, double from_s) {
     constexpr double max_back_s = 1.0;  // messages are written in almost the order of their times
-    constexpr double max_ahead_s = 10.0;
     return time_s >= from_s - max_back_s && time_s <= from_s + max_ahead_s;
 }
 
@@ -63,13 +69,57 @@ void RowCollector::bind(LoggedMessage& message) {
 }
 
 void RowCollector::append(const Row& row) {
-    auto& table = sender_.tables[row.table];
+    if (!row.table) return;
+    auto& table = sender_.tables[*row.table];
     table.time_s.push_back(row.time_s);
     for (std::size_t i = 0; i < table.columns.size(); ++i) table.columns[i].values.push_back(row.values[i]);
 }
 
-void RowCollector::drop(const std::optional<Row>& row) {
-    if (row) skips_.add({SkipReason::no_time, 0}, std::isnan(last_s_) ? row->time_s : last_s_, row->offset + 1);
+/// The row's time is right.
+void RowCollector::set_time(Row row) {
+    constexpr std::size_t few = 10;  // events of the start
+    if (std::isnan(last_s_) && early_ > few)
+        skips_.add({SkipReason::no_time, without_time}, row.time_s, first_early_ + 1, early_);
+    place_untimed(row.time_s);
+    count_gap(row.time_s);
+    last_s_ = row.time_s;
+    append(row);
+}
+
+/// The pending row's time is damaged; rows behind it belong to the time before.
+void RowCollector::drop_pending() {
+    if (!pending_) return;
+    skips_.add({SkipReason::no_time, damaged_time}, std::isnan(last_s_) ? pending_->time_s : last_s_,
+               pending_->offset + 1);
+    if (!std::isnan(last_s_)) std::ranges::move(behind_pending_, std::back_inserter(untimed_));
+    if (std::isnan(last_s_)) early_ += behind_pending_.size();
+    behind_pending_.clear();
+    pending_.reset();
+}
+
+/// Appends the rows without a time: evenly up to the next time, if they are about as many as usual in that time, else
+/// at the usual interval. Of those after the last time only the first ten seconds count.
+void RowCollector::place_untimed(double next_s) {
+    constexpr double pause_intervals = 3.0;
+    const auto intervals = static_cast<double>(untimed_.size() + 1);
+    const double ahead_s = std::max(next_s - last_s_, 0.0);
+    const double usual_s = intervals_ > 0.0 ? timed_s_ / intervals_ : 0.0;
+    const double pause_s = intervals_ > 0.0 ? pause_intervals * usual_s * intervals : max_ahead_s;
+    const double step_s = ahead_s > pause_s ? usual_s : ahead_s / intervals;
+    const double end_s = std::isfinite(next_s) ? next_s : last_s_ + max_ahead_s;
+    double time_s = last_s_;
+    for (auto& row : untimed_) {
+        time_s += step_s;
+        row.time_s = std::min(time_s, std::max(end_s, last_s_));
+        if (std::isfinite(next_s) || time_s <= end_s)
+            append(row);
+        else
+            skips_.add({SkipReason::no_time, without_time}, last_s_, row.offset + 1);
+    }
+    untimed_.clear();
+    if (!(ahead_s <= max_ahead_s)) return;
+    timed_s_ += ahead_s;
+    intervals_ += intervals;
 }
 
 void RowCollector::count_gap(double time_s) {
@@ -77,28 +127,30 @@ void RowCollector::count_gap(double time_s) {
     gap_ = 0;
 }
 
-void RowCollector::add(const LoggedMessage& message, double time_s, std::size_t offset, const ValueOf& value_of) {
-    if (!message.table) return;
-    if (std::isnan(time_s)) {
-        if (std::isnan(last_s_)) ++untimed_;  // events before the first time
-        if (!std::isnan(last_s_)) skips_.add({SkipReason::no_time, 0}, last_s_, offset + 1);
+void RowCollector::add(const LoggedMessage& message, std::optional<double> time_s, std::size_t offset,
+                       const ValueOf& value_of) {
+    has_times_ = has_times_ || time_s;
+    if (!message.table && !message.is_clock) return;
+    const bool is_damaged = time_s && std::isnan(*time_s);
+    if (std::isnan(last_s_) && (is_damaged || (!time_s && !pending_))) {
+        if (early_++ == 0) first_early_ = offset;
         return;
     }
-    Row row{*message.table, time_s, offset, {}};
+    if (is_damaged) return skips_.add({SkipReason::no_time, damaged_time}, last_s_, offset + 1);
+    Row row{message.table, time_s.value_or(last_s_), offset, {}};
     for (const auto& field : message.column_fields) row.values.push_back(field ? value_of(*field) : unknown_value);
-    if (continues_clock(time_s, last_s_)) {
-        drop(pending_);
-    } else if (pending_ && continues_clock(time_s, pending_->time_s)) {
-        append(*pending_);
+    if (!time_s) return (pending_ ? behind_pending_ : untimed_).push_back(std::move(row));
+    if (continues_clock(*time_s, last_s_)) {
+        drop_pending();
+    } else if (pending_ && continues_clock(*time_s, pending_->time_s)) {
+        set_time(*std::exchange(pending_, std::nullopt));
+        untimed_ = std::exchange(behind_pending_, {});
     } else {  // also at the beginning
-        drop(pending_);
+        drop_pending();
         pending_ = std::move(row);
         return;
     }
-    pending_.reset();
-    count_gap(time_s);
-    last_s_ = time_s;
-    append(row);
+    set_time(std::move(row));
 }
 
 void RowCollector::skip(std::size_t offset, std::size_t count) {
@@ -118,32 +170,36 @@ void RowCollector::list(const LoggedMessage& message) {
     for (const auto& field : message.fields) listed.fields.push_back(field.name);
 }
 
-std::vector<MessageTable>& RowCollector::end() {
-    if (pending_ && std::isnan(last_s_))
-        append(*pending_);
-    else
-        drop(pending_);
-    pending_.reset();
-    return sender_.tables;
+void RowCollector::end() {
+    if (pending_ && std::isnan(last_s_)) {
+        set_time(*std::exchange(pending_, std::nullopt));
+        untimed_ = std::exchange(behind_pending_, {});
+    }
+    drop_pending();
+    if (!std::isnan(last_s_)) place_untimed(after_last_s);
 }
 
 AutopilotLog RowCollector::take(bool as_lines) {
-    auto& tables = end();
+    end();
+    auto& tables = sender_.tables;
     count_gap(after_last_s);
+    if (!has_times_ && early_ > 0)
+        throw InputError({file_.string()}, fmt::format("no message has a time, also none of {} that are used", early_),
+                         "in logs of ArduPilot before 3.1 only GPS has one: the aircraft had no GPS, or no fix");
     for (std::size_t t = 0; t < tables.size(); ++t) {
         std::size_t column = 0;
         std::erase_if(tables[t].columns, [&](const Column&) { return !is_bound_[t][column++]; });
     }
     std::erase_if(tables, [](const MessageTable& table) { return table.empty(); });
-    if (tables.empty() && untimed_ > 0) skips_.add({SkipReason::no_time, 0}, after_last_s, 1, untimed_);
     auto& log = result_.log;
     log.data_file = file_;
     log.flight = flight_name(file_);
     for (auto& [kind, skipped] : skips_.take()) {
         const bool is_row = kind.reason == SkipReason::no_time;
-        skipped.reason = is_row     ? "messages whose time is damaged, or that have none"
-                         : as_lines ? "no message"
-                                    : "damaged or cut off";
+        skipped.reason =
+            is_row     ? kind.detail == damaged_time ? "messages whose time is damaged" : "messages without a time"
+            : as_lines ? "no message"
+                       : "damaged or cut off";
         using Unit = SkippedLines::Unit;
         skipped.unit = as_lines ? Unit::line : is_row ? Unit::frame : Unit::byte;
         log.skipped.push_back(std::move(skipped));

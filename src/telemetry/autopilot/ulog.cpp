@@ -36,6 +36,7 @@ struct UlogField {
     std::string type;
     std::size_t elements = 1;
     std::string name;
+    bool is_array = false;  ///< "float[1] control" is one too
 };
 
 std::optional<WireType> wire_type(std::string_view name) {
@@ -57,6 +58,7 @@ std::optional<UlogField> field_of(std::string_view text) {
         const auto elements = parse_unsigned(type.substr(bracket + 1, type.size() - bracket - 2));
         if (!type.ends_with(']') || !elements || *elements == 0 || *elements > max_message_bytes) return std::nullopt;
         field.elements = *elements;
+        field.is_array = true;
     }
     if (field.type.empty() || field.name.empty()) return std::nullopt;
     return field;
@@ -222,7 +224,7 @@ class UlogReader {
         for (const auto& field : format->second) {
             const auto basic = wire_type(field.type);
             for (std::size_t i = 0; i < field.elements; ++i) {
-                auto name = prefix + (field.elements == 1 ? field.name : fmt::format("{}[{}]", field.name, i));
+                auto name = prefix + (field.is_array ? fmt::format("{}[{}]", field.name, i) : field.name);
                 if (!basic && !add_fields(field.type, name + ".", depth + 1, topic)) return false;
                 if (!basic) continue;
                 topic.fields.push_back({std::move(name), topic.bytes, *basic});

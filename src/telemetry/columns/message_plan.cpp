@@ -27,7 +27,8 @@ FieldConversion declared_conversion(DecodePlan& plan, std::size_t index) {
         field.unit = unit;
     }
     const auto conversion = find_conversion(plan.definition->name, field);
-    if (!conversion.quantity && !field.unit.empty() && field.alt_unit.empty()) {
+    constexpr std::string_view no_quantity = "byte_mask";  // of states
+    if (!conversion.quantity && !field.unit.empty() && field.unit != no_quantity && field.alt_unit.empty()) {
         constexpr std::size_t max_unit = 20;
         std::ranges::replace_if(
             field.unit, [](char c) { return c < ' ' || c > '~'; }, '?');

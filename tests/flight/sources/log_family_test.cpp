@@ -73,6 +73,85 @@ TEST(LogFamily, OfASimulatorIsLabelledAndExcluded) {
     EXPECT_EQ(segment_and_check(series, options).exclusion, "");
 }
 
+TEST(LogFamily, AVehicleStandsInThePreambleOfAText) {
+    const auto series = series_of(
+        "1\n\nArduCopter V3.0.1 (5c6503e2)\nFree RAM: 1331\nAPM 2\n"
+        "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 1, 9, CURR, Ih, TimeMS,Volt\n"
+        "CURR, 1000, 1480\nCURR, 1100, 1481\n",
+        "x.log");
+    EXPECT_EQ(series.aircraft_name, "ArduCopter");
+    EXPECT_EQ(series.firmware, "rotorcraft");
+    const auto rover = series_of(test::dataflash_log(9, "APMrover2 V3.0.1 (2cb4b85a)"));
+    EXPECT_EQ(rover.firmware, "rover");
+    const auto plane =
+        series_of(test::dataflash_log(9, "") + test::dataflash_format(9, "PARM", "QNf", "TimeUS,Name,Value", 28) +
+                  test::dataflash_message(9, test::little_endian(std::uint64_t{11'000'000}) +
+                                                 test::padded("SYSID_SW_TYPE", 16) + test::little_endian(0.0F)));
+    EXPECT_EQ(plane.firmware, "fixedwing");
+}
+
+/// A log with one GPS message of a week, at 10.5 s.
+FlightSeries of_week(std::uint16_t week) {
+    return series_of(test::dataflash_log(9) + test::dataflash_format(4, "GPS", "QBIH", "TimeUS,Status,GMS,GWk", 15) +
+                     test::dataflash_message(4, test::little_endian(std::uint64_t{10'500'000}) + '\x03' +
+                                                    test::little_endian(std::uint32_t{3'600'000}) +
+                                                    test::little_endian(week)));
+}
+
+TEST(LogFamily, ADateBefore2010IsThatOfAnOverflowedWeek) {
+    const auto right = of_week(2206);  // 17 April 2022
+    ASSERT_TRUE(right.start_clock_s);
+    EXPECT_EQ(*right.start_clock_s, 1'650'157'182.0 - 10.5) << "01:00 of GPS, less 18 leap seconds";
+    for (const std::uint16_t lost : {1024, 2048}) {
+        const auto series = of_week(static_cast<std::uint16_t>(2206 - lost));
+        EXPECT_EQ(series.start_clock_s, right.start_clock_s);
+        EXPECT_THAT(series.notes, Contains(HasSubstr(fmt::format("GPS.GWk is {} weeks too early", lost))));
+    }
+    EXPECT_THAT(right.notes, testing::Each(testing::Not(HasSubstr("weeks"))));
+    EXPECT_FALSE(of_week(0).start_clock_s);
+}
+
+TEST(LogFamily, OfPx4Until2018HasItsBarometerInSensorCombined) {
+    auto log = test::ulog_log(50) +
+               test::ulog_message('F', "sensor_combined:uint64_t timestamp;float baro_alt_meter;") +
+               test::ulog_subscription(0, 9, "sensor_combined");
+    for (int i = 0; i < 3; ++i)
+        log += test::ulog_message('D', test::little_endian(std::uint16_t{9}) +
+                                           test::little_endian(std::uint64_t{20'000'000} + 100'000U * i) +
+                                           test::little_endian(500.0F + static_cast<float>(i)));
+    EXPECT_EQ(select_track(series_of(log, "x.ulg"), "altitude_m").source, "sensor_combined.baro_alt_meter");
+}
+
+TEST(LogFamily, OfSdlog2IsReadAsPx4) {
+    auto log = test::dataflash_format(129, "TIME", "Q", "StartTime", 8) +
+               test::dataflash_format(20, "BATT", "fff", "V,C,Discharged", 12) +
+               test::dataflash_format(4, "SENS", "ff", "BaroPres,BaroAlt", 8) +
+               test::dataflash_format(9, "ATTC", "ffff", "Roll,Pitch,Yaw,Thrust", 16) +
+               test::dataflash_format(10, "STAT", "BBBfBB", "MainState,NavState,ArmS,BatRem,BatWarn,Landed", 9) +
+               test::dataflash_format(11, "PARM", "Nf", "Name,Value", 20) +
+               test::dataflash_message(11, test::padded("MAV_TYPE", 16) + test::little_endian(2.0F));
+    for (unsigned i = 0; i < 20; ++i) {
+        const auto step = static_cast<float>(i);
+        log += test::dataflash_message(129, test::little_endian(std::uint64_t{3'000'000} + 100'000 * i)) +
+               test::dataflash_message(
+                   20, test::little_endian(16.0F) + test::little_endian(step) + test::little_endian(100.0F * step)) +
+               test::dataflash_message(4, test::little_endian(1000.0F) + test::little_endian(500.0F + step)) +
+               test::dataflash_message(9, std::string(12, '\0') + test::little_endian(0.25F + 0.01F * step)) +
+               test::dataflash_message(10, std::string("\x03\x03\x02", 3) + std::string(5, '\0') + '\x01');
+    }
+    const auto series = series_of(log, "x.px4log");
+    EXPECT_EQ(series.aircraft_name, "PX4");
+    EXPECT_EQ(series.firmware, "rotorcraft");
+    EXPECT_EQ(series.flight, "x");
+    EXPECT_EQ(power_track(series).source, "BATT.V * BATT.C");
+    EXPECT_EQ(power_track(series).value.at(2), 32.0);
+    EXPECT_EQ(select_track(series, "altitude_m").value.at(1), 501.0);
+    EXPECT_NEAR(select_track(series, "throttle_percent").value.at(0), 25.0, 1e-6);
+    EXPECT_EQ(select_track(series, "armed").value.at(0), 1.0);
+    EXPECT_EQ(select_track(series, "landed").value.at(0), 1.0);
+    EXPECT_NEAR(select_track(series, "charge_ah").value.at(10), 1.0, 1e-9);
+}
+
 TEST(LogFamily, OfAnotherAircraftIsRefused) {
     const FlightFile file(test::write_text(test::scratch_dir() / "x.ulg", test::ulog_log(5)));
     EXPECT_EQ(read_candidates(file, "0A1B").at(0).aircraft_id, "0A1B");
@@ -85,6 +164,30 @@ TEST(LogFamily, WithoutACurrentSensorHasNoPower) {
     EXPECT_THAT(
         test::rejected([&] { require_power(select_tracks(series_of(log, "x.ulg"))); }),
         HasSubstr("battery_status.voltage_v * battery_status.current_a has no value: there is no current sensor"));
+}
+
+TEST(LogFamily, FixIsThatOfAnyReceiver) {
+    auto log = test::dataflash_log(100) + test::dataflash_format(4, "GPS", "QBBf", "TimeUS,I,Status,Alt", 14);
+    const auto gps = [&](unsigned time_s, std::uint8_t receiver, std::uint8_t status, float alt_m) {
+        log += test::dataflash_message(4, test::little_endian(std::uint64_t{time_s} * 1'000'000) +
+                                              test::little_endian(receiver) + test::little_endian(status) +
+                                              test::little_endian(alt_m));
+    };
+    gps(20, 0, 1, 9e3F);
+    gps(21, 1, 3, 30.0F);
+    gps(22, 0, 4, 31.0F);
+    gps(23, 1, 2, 9e3F);
+    gps(24, 0, 1, 9e3F);
+    const auto series = series_of(log);
+    const auto fix = select_track(series, "fix");
+    EXPECT_EQ(fix.source, "GPS.Status");
+    EXPECT_THAT(fix.value, testing::ElementsAre(0, 1, 1, 1, 0));
+    std::vector<double> altitudes_m;
+    for (const auto& track : series.tracks)
+        if (track.source.starts_with("GPS") && track.name == "altitude_m")
+            altitudes_m.insert(altitudes_m.end(), track.value.begin(), track.value.end());
+    EXPECT_THAT(altitudes_m, testing::ElementsAre(31, 30)) << "of receiver 0, then of 1";
+    EXPECT_EQ(parse_series_csv(to_csv(series), "x.csv").tracks, series.tracks);
 }
 
 TEST(Batteries, InParallelAreSummed) {

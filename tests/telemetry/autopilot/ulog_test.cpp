@@ -42,6 +42,17 @@ TEST(Ulog, FieldsAreFoundByNameAlsoBehindOtherFormats) {
     EXPECT_THAT(table.columns[1].values, ElementsAre(-4.0));
 }
 
+TEST(Ulog, AnArrayOfOneHasAnIndex) {
+    const auto log =
+        test::ulog_header() + test::ulog_message('F', "topic:uint64_t timestamp;float[1] control;") +
+        test::ulog_subscription(0, 1, "topic") +
+        test::ulog_message('D', test::little_endian(std::uint16_t{1}) + test::little_endian(std::uint64_t{3'000'000}) +
+                                    test::little_endian(0.5F));
+    const auto read = read_log(log, {{"topic", {"control[0]"}}});
+    ASSERT_EQ(test::table_of(read, "topic").columns.size(), 1U);
+    EXPECT_THAT(test::table_of(read, "topic").columns[0].values, ElementsAre(0.5));
+}
+
 TEST(Ulog, DataOfAnotherSizeAreDropped) {
     auto log = test::ulog_log(3);
     log += test::ulog_message(
