@@ -136,6 +136,7 @@ const std::vector<std::string>& track_names() {
                                                 "takeoff",
                                                 "armed",
                                                 "landed",
+                                                "fix",
                                                 "ground_altitude_m",
                                                 "payload_kg"};
     return names;

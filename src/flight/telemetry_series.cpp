@@ -175,6 +175,8 @@ const LogFamily& paparazzi_family() {
             {"mode", "PPRZ_MODE", {{"ap_mode"}}, latest},
             {"block", "NAVIGATION", {{"cur_block"}}, latest},
             {"rover_mode", "ROVER_STATUS", {{"ap_mode"}}, latest},
+            {"fix", "GPS", {{"mode"}}, latest},
+            {"fix", "GPS_INT", {{"fix"}}, latest},
             {"ground_altitude_m", "NAVIGATION_REF", {{"ground_alt", "m"}}, latest},
             // Rotorcraft before 2018: thrust, without a unit, on Paparazzi's command scale.
             {"throttle_percent", "ROTORCRAFT_FP", {{"thrust"}}, mean, percent_of_command},
@@ -186,7 +188,7 @@ const LogFamily& paparazzi_family() {
             {"latitude_deg", "GPS", utm, mean, utm_latitude_deg, nullptr, "GPS.utm"},
             {"longitude_deg", "GPS", utm, mean, utm_longitude_deg, nullptr, "GPS.utm"},
         },
-        {},
+        {{"GPS", nullptr, "mode", min_fix}, {"GPS_INT", nullptr, "fix", min_fix}},
         nullptr,
         {{"ESC", {"amps", "power", "node_id", "motor_id"}},
          {"POWER_DEVICE", {"node_id", "circuit", "current"}},

@@ -280,6 +280,20 @@ TEST(TelemetrySeries, UsesAltitudeThatVaries) {
     EXPECT_THAT(on_power_clock(rotorcraft, "altitude_m"), ElementsAre(1, 2));
 }
 
+TEST(TelemetrySeries, PositionsWithoutAFixDoNotCount) {
+    const auto row = [](int time_s, int mode, int alt_cm) {
+        return fmt::format("{0} 20 ENERGY 0 12. 1. 12. 0. 0.\n{0} 20 GPS {1} 1 1 0 {2} 0 0 1 1 31 0\n", time_s, mode,
+                           alt_cm);
+    };
+    const auto series = series_of(row(1, 0, 900000) + row(2, 3, 20000) + row(3, 3, 21000) + row(4, 2, 900000));
+    EXPECT_THAT(select_track(series, "altitude_m").value, ElementsAre(20, 21));
+    EXPECT_THAT(select_track(series, "altitude_m").time_s, ElementsAre(2, 3));
+    const auto fix = select_track(series, "fix");
+    EXPECT_EQ(fix.source, "GPS.mode");
+    EXPECT_THAT(fix.time_s, ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(fix.value, ElementsAre(0, 1, 1, 0));
+}
+
 class ReadFlight : public testing::Test {
   protected:
     std::filesystem::path write(const std::string& name, const std::string& text) {

@@ -73,6 +73,7 @@ const std::vector<FamilyTrack>& ardupilot_tracks() {
         {"armed", "EV", {{"Id"}}, latest, switched<10, 11>},
         {"landed", "EV", {{"Id"}}, latest, switched<18, 28>},
         {"landed", "STAT", {{"isFlying"}}, latest, [](const auto& flying) { return 1.0 - flying[0]; }},
+        {"fix", "GPS", {{"Status"}}, latest},
     };
     return tracks;
 }
@@ -110,7 +111,7 @@ const LogFamily& ardupilot_family() {
                                   {{"BAT", "Instance"},
                                    {"BAT", "Inst"},
                                    {"BARO", "I"},
-                                   {"GPS", "I", "Status", 3.0},
+                                   {"GPS", "I", "Status", min_fix},
                                    {"ARSP", "I"},
                                    {"XKF2", "C"},
                                    {"NKF2", "C"}},

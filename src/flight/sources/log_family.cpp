@@ -23,24 +23,26 @@ bool is_of_battery(std::string_view track) {
     return std::ranges::find(names, track) != std::end(names);
 }
 
-/// The instance of each row of a table; NaN for a row that does not count. `numbered`: the log numbers them.
+/// The instance of each row of a table. `numbered`: the log numbers them.
 struct Instances {
     std::vector<double> of_row;
-    std::set<double> all;
+    std::vector<bool> counts;  ///< the row has a value: false for a position without a fix
+    std::set<double> all = {};
     bool numbered = false;
 };
 
 Instances instances_of(const MessageTable& table, const LogFamily& family) {
     constexpr std::size_t max_instances = 16;
-    Instances instances{std::vector<double>(table.time_s.size(), 0.0), {}};
+    const auto rows = table.time_s.size();
+    Instances instances{std::vector<double>(rows, 0.0), std::vector<bool>(rows, true)};
     for (const auto& rule : family.messages) {
         if (table.message != rule.message) continue;
         const auto* number = rule.instance == nullptr ? nullptr : table.column(rule.instance);
         const auto* valid = rule.valid == nullptr ? nullptr : table.column(rule.valid);
         if (number != nullptr && !instances.numbered) instances.of_row = number->values;
         instances.numbered = instances.numbered || number != nullptr;
-        for (std::size_t i = 0; valid != nullptr && i < table.time_s.size(); ++i)
-            if (!(valid->values[i] >= rule.min_valid)) instances.of_row[i] = missing_value;
+        for (std::size_t i = 0; valid != nullptr && i < rows; ++i)
+            instances.counts[i] = valid->values[i] >= rule.min_valid;
     }
     for (const double number : instances.of_row)
         if (!std::isnan(number) && instances.all.size() < max_instances) instances.all.insert(number);
@@ -82,6 +84,23 @@ std::string source_name(const FamilyTrack& of, const std::string& instance) {
     return fmt::format("{0}.{1} * {0}.{2}", message, of.sources[0].field, of.sources[1].field);
 }
 
+/// Adds the state 1 while one of the receivers has a 3D fix, and 0 while none has.
+void add_fix(const FamilyTrack& of, const MessageTable& table, const Instances& receivers,
+             const std::vector<double>& fix, std::vector<Track>& tracks) {
+    std::set<double> fixed;
+    std::vector<double> values(fix.size(), missing_value);
+    for (std::size_t i = 0; i < fix.size(); ++i) {
+        const double receiver = receivers.of_row[i];
+        if (std::isnan(fix[i]) || std::isnan(receiver)) continue;
+        if (fix[i] >= min_fix)
+            fixed.insert(receiver);
+        else
+            fixed.erase(receiver);
+        values[i] = fixed.empty() ? 0.0 : 1.0;
+    }
+    tracks.push_back(make_candidate(of.track, source_name(of, ""), table, values, of.merge));
+}
+
 /// Adds the track of each instance.
 void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instances& instances,
                 const std::vector<BoundSource>& sources, std::vector<Track>& tracks) {
@@ -89,7 +108,7 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
     for (const double number : instances.all) {
         std::vector<double> values(table.time_s.size(), missing_value);
         for (std::size_t i = 0; i < values.size(); ++i) {
-            if (instances.of_row[i] != number) continue;
+            if (instances.of_row[i] != number || !instances.counts[i]) continue;
             std::ranges::transform(sources, row.begin(), [&](const BoundSource& source) {
                 const double value = source.column->values[i];
                 return value == source.absent ? missing_value : value * source.factor;
@@ -112,7 +131,10 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
         const auto* table = sender.table(of.message);
         if (table == nullptr || (of.firmware != nullptr && of.firmware != firmware)) continue;
         const auto sources = bound_sources(*table, of, family.unstated_units);
-        if (!sources.empty()) add_tracks(of, *table, instances_of(*table, family), sources, tracks);
+        if (std::string_view(of.track) == "fix" && !sources.empty())
+            add_fix(of, *table, instances_of(*table, family), sources.front().column->values, tracks);
+        else if (!sources.empty())
+            add_tracks(of, *table, instances_of(*table, family), sources, tracks);
         for (const auto& source : sources)
             if (std::string_view(of.track) == "power_w" && !source.unit.empty())
                 assumed.insert(fmt::format("{}.{} is read in {}", of.message, source.column->field, source.unit));

@@ -39,6 +39,9 @@ struct FamilyMessage {
     double min_valid = 0.0;          ///< at least this value
 };
 
+/// Lowest number of a receiver's 3D fix, in the logs of all families.
+inline constexpr double min_fix = 3.0;
+
 /// Track of Unix times, from which the series has its start_clock_s.
 inline constexpr auto utc_track = "utc_s";
 

@@ -80,6 +80,7 @@ const std::vector<FamilyTrack>& px4_tracks() {
         {"climb_m_per_s", "vehicle_local_position", {{"vz", "-1m/s"}}},
         {"mode", "vehicle_status", {{"nav_state"}}, latest},
         {"landed", "vehicle_land_detected", {{"landed"}}, latest},
+        {"fix", "vehicle_gps_position", {{"fix_type"}}, latest},
         {"ground_speed_m_per_s", "vehicle_local_position", velocity, mean, speed_of},
         {"course_deg", "vehicle_local_position", velocity, latest, course_of},
         {"heading_deg", "vehicle_attitude", quaternion, latest, heading_of},
@@ -136,7 +137,7 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
 const LogFamily& px4_family() {
     static const LogFamily family{px4_tracks(),
                                   {{"battery_status", "multi_id"},
-                                   {"vehicle_gps_position", "multi_id", "fix_type", 3.0},
+                                   {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
                                    {"vehicle_air_data", "multi_id"},
                                    {"airspeed", "multi_id"},
                                    {"wind_estimate", "multi_id"},

@@ -81,6 +81,30 @@ TEST(LogFamily, WithoutACurrentSensorHasNoPower) {
         HasSubstr("battery_status.voltage_v * battery_status.current_a has no value: there is no current sensor"));
 }
 
+TEST(LogFamily, FixIsThatOfAnyReceiver) {
+    auto log = test::dataflash_log(100) + test::dataflash_format(4, "GPS", "QBBf", "TimeUS,I,Status,Alt", 14);
+    const auto gps = [&](unsigned time_s, std::uint8_t receiver, std::uint8_t status, float alt_m) {
+        log += test::dataflash_message(4, test::little_endian(std::uint64_t{time_s} * 1'000'000) +
+                                              test::little_endian(receiver) + test::little_endian(status) +
+                                              test::little_endian(alt_m));
+    };
+    gps(20, 0, 1, 9e3F);
+    gps(21, 1, 3, 30.0F);
+    gps(22, 0, 4, 31.0F);
+    gps(23, 1, 2, 9e3F);
+    gps(24, 0, 1, 9e3F);
+    const auto series = series_of(log);
+    const auto fix = select_track(series, "fix");
+    EXPECT_EQ(fix.source, "GPS.Status");
+    EXPECT_THAT(fix.value, testing::ElementsAre(0, 1, 1, 1, 0));
+    std::vector<double> altitudes_m;
+    for (const auto& track : series.tracks)
+        if (track.source.starts_with("GPS") && track.name == "altitude_m")
+            altitudes_m.insert(altitudes_m.end(), track.value.begin(), track.value.end());
+    EXPECT_THAT(altitudes_m, testing::ElementsAre(31, 30)) << "of receiver 0, then of 1";
+    EXPECT_EQ(parse_series_csv(to_csv(series), "x.csv").tracks, series.tracks);
+}
+
 TEST(Batteries, InParallelAreSummed) {
     const auto series = series_of(test::ulog_log(50), "x.ulg");
     EXPECT_TRUE(series.notes.empty()) << "the names of ULog's fields state their units";
