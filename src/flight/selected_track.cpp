@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/flight_phases.h"
+#include "flight/series_file.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/device_check.h"
 #include "flight/sources/device_sum.h"
@@ -89,10 +90,10 @@ bool is_fraction(const Track& throttle, const FlightSeries& series) {
     return std::ranges::count_if(throttle.value, is_between) >= static_cast<std::ptrdiff_t>(enough);
 }
 
-/// Converts a fraction to percent.
+/// Converts a fraction to percent: in a CSV, as a log states its unit.
 void scale_fraction(const FlightSeries& series, Choice& throttle) {
     auto& track = throttle.track;
-    if (!is_fraction(track, series)) return;
+    if (track.source != plain_source || !is_fraction(track, series)) return;
     const auto [low, high] = std::ranges::minmax(track.value);
     throttle.removal_notes.push_back(
         fmt::format("the throttle ({}) is {:.3g} to {:.3g}: it is read as a fraction, {:.0f} to {:.0f} %", track.source,
