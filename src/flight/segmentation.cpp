@@ -137,8 +137,8 @@ FlightPhases segment(const SelectedTracks& tracks, const SegmentationOptions& op
         }
         if (heights.are_unknown()) {
             phases.warnings.push_back(fmt::format(
-                "sortie {}: the altitude wanders by {:.0f} m at rest, the height is {:.0f} m: lift-off and touchdown are "
-                "those of motor and motion, its phases are uncertain",
+                "sortie {}: the altitude is uncertain by {:.0f} m, its height is {:.0f} m: motor and motion show lift-off "
+                "and touchdown, take-off and landing are uncertain",
                 phases.sorties.size() + 1, heights.wander_m, heights.cruise_height_m));
         }
         phases.sorties.push_back(std::move(sortie));

@@ -76,7 +76,7 @@ std::size_t size_until(const FlightSeries& series, const ResampledFlight& grid, 
 Track altitude_with_fix(const SelectedTracks& tracks) {
     auto altitude = tracks["altitude_m"];
     const auto& fix = tracks["fix"];
-    if (fix.empty() || !altitude.source.starts_with("ESTIMATOR")) return altitude;
+    if (!altitude.source.starts_with("ESTIMATOR") || std::ranges::count(fix.value, 1.0) == 0) return altitude;
     std::size_t after = 0;
     erase_samples(altitude, [&](std::size_t i) {
         while (after < fix.time_s.size() && fix.time_s[after] <= altitude.time_s[i]) ++after;
@@ -184,7 +184,8 @@ ResampledFlight make_grid(const SelectedTracks& tracks) {
 double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
     if (grid.motor_indicator == MotorIndicator::power) return idle_power_percent;
     if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
-    return std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent;
+    return std::min(std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent,
+                    options.flight_throttle_percent);
 }
 
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {

@@ -50,13 +50,19 @@ std::size_t end_of_climb(const std::vector<double>& height_m, IndexSpan span, do
     return climbs.empty() ? end : climbs.back().end;
 }
 
-/// The last point, near the one at which the motors begin to lift, before the aircraft stays clear of the ground; that
-/// one if the altitude shows none.
+/// The last point, near the one at which the motors begin to lift, before the aircraft stays clear of the ground, less
+/// the time of the climb to there; that one if the altitude shows none.
 std::size_t lift_off_of(std::span<const double> altitude_m, double clear_altitude_m, std::size_t lifting) {
     const auto from = lifting - std::min(lifting, steps(max_early_s));
     const auto until = std::min(lifting + steps(max_wait_s + level_s), altitude_m.size());
-    for (const auto& run : runs_of({from, until}, [&](std::size_t i) { return altitude_m[i] > clear_altitude_m; }))
-        if (run.size() > steps(level_s)) return run.begin == from ? lifting : run.begin - 1;
+    for (const auto& run : runs_of({from, until}, [&](std::size_t i) { return altitude_m[i] > clear_altitude_m; })) {
+        if (run.size() <= steps(level_s)) continue;
+        if (run.begin == from) return lifting;
+        const double climbed_m = altitude_m[run.begin + steps(level_s)] - altitude_m[run.begin];
+        const double climb = clear_m / std::max(climbed_m, clear_m) * static_cast<double>(steps(level_s));
+        const auto back = climbed_m > clear_m ? std::min(run.begin - 1, static_cast<std::size_t>(climb)) : 0;
+        return run.begin <= lifting ? run.begin - 1 : std::max(lifting, run.begin - 1 - back);
+    }
     return lifting;
 }
 
