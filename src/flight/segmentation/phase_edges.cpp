@@ -9,8 +9,9 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double min_ground_s = 3.0;         // of a rest that shows the ground after a flight,
-constexpr double max_ground_drift_m = 3.0;   // or it is no higher than the ground before
+// A rotorcraft whose motors stop falls by 3 m within a second.
+constexpr double min_ground_s = 1.5;  // of a rest after a flight, or it is as low as the one before
+constexpr double max_still_m = 3.0;
 
 /// Ground level next to an activity: the last (or first) twenty seconds with an altitude of the rest there; of a
 /// rotorcraft, which may fly low while the altitude drifts, five.
@@ -26,11 +27,11 @@ std::optional<GroundLevel> adjacent_ground(const ResampledFlight& grid, IndexSpa
     return GroundLevel{median_high(near_m), high_m - low_m};
 }
 
-/// Whether a rotorcraft whose log ends soon after its motors idle has not come down yet.
+/// Whether a rotorcraft has not come down where its log ends soon after its motors stop.
 bool is_in_the_air(const ResampledFlight& grid, const Activity& activity, IndexSpan rest) {
-    return !grid.hovers.empty() && rest.size() < grid.steps(min_ground_s) && activity.ground_before &&
-           activity.ground_after &&
-           activity.ground_after->altitude_m - activity.ground_before->altitude_m > max_ground_drift_m;
+    const auto& [moving, span, before, after] = activity;
+    if (grid.hovers.empty() || !before || !after || after->altitude_m - before->altitude_m <= max_still_m) return false;
+    return rest.size() < grid.steps(min_ground_s) || after->wander_m > max_still_m;
 }
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
