@@ -55,6 +55,7 @@ std::span<const TrackMember> track_members() {
         {"takeoff", &D::takeoff},
         {"armed", &D::armed},
         {"landed", &D::landed},
+        {"fix", &D::fix},
         {"ground_altitude_m", &D::ground_altitude_m},
         {"payload_kg", &D::payload_kg},
     });

@@ -63,6 +63,7 @@ struct FlightData : FlightInfo {
     ChosenTrack takeoff;
     ChosenTrack armed;
     ChosenTrack landed;
+    ChosenTrack fix;  ///< 1: the position has a 3D fix
     ChosenTrack ground_altitude_m;
     ChosenTrack payload_kg;
 

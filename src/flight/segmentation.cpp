@@ -18,13 +18,8 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Interval between the samples around a time; 0 outside of the samples.
-double gap_around_s(const std::vector<double>& sample_s, double time_s) {
-    const auto after = std::upper_bound(sample_s.begin(), sample_s.end(), time_s);
-    return after == sample_s.begin() || after == sample_s.end() ? 0.0 : *after - *(after - 1);
-}
-
-constexpr double long_gap_s = 10.0;  // for an edge between altitudes
+constexpr double min_flight_s = 5.0;
+constexpr double min_motion_m = 0.5;  // above the noise of an altitude
 
 /// An edge with its evidence.
 PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, double exact_s) {
@@ -36,7 +31,7 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
         return channel[std::min(static_cast<std::size_t>(std::max(index, 0L)), channel.size() - 1)];
     };
     edge.altitude_m = nearest(grid.altitude_m);
-    edge.gap_s = gap_around_s(data.altitude_m.time_s, time_s);
+    edge.gap_s = interval_around_s(grid.altitude_time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
     if (const auto& mode = data.mode; !mode.empty()) edge.mode = static_cast<int>(state_at(mode, time_s));
     if (const auto& block = data.block; !block.empty()) edge.block = static_cast<int>(state_at(block, time_s));
@@ -129,16 +124,23 @@ FlightPhases segment(const FlightData& data, const SegmentationOptions& options)
         if (grounds.disagreed) {
             phases.warnings.push_back(fmt::format(
                 "the ground is at {:.0f} m before the sortie at {:.0f} s and at {:.0f} m after it: the latter is used",
-                *activity.ground_before_m, grid.time_s(activity.moving.begin), *activity.ground_after_m));
+                activity.ground_before->altitude_m, grid.time_s(activity.moving.begin),
+                activity.ground_after->altitude_m));
         }
         if (auto warning = motor_contradiction(candidate); !warning.empty())
             phases.warnings.push_back(std::move(warning));
         auto sortie = make_sortie(candidate);
-        if (sortie.phases.empty()) {
+        if (sortie.phases.empty() || sortie.end_s() - sortie.start_s() < min_flight_s) {
             phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
-                                            fmt::format("height of {:.0f} m for less than {} s: too short for a phase",
-                                                        heights.max_m, grid.step_s)});
+                                            fmt::format("height of {:.0f} m for less than {:.0f} s: too short for a flight",
+                                                        heights.max_m, min_flight_s)});
             continue;
+        }
+        if (heights.are_unknown()) {
+            phases.warnings.push_back(fmt::format(
+                "sortie {}: the altitude is uncertain by {:.0f} m, its height is {:.0f} m: motor and motion show lift-off "
+                "and touchdown, take-off and landing are uncertain",
+                phases.sorties.size() + 1, heights.wander_m, heights.cruise_height_m));
         }
         phases.sorties.push_back(std::move(sortie));
         phases.sorties.back().number = phases.sorties.size();
@@ -154,8 +156,13 @@ void require_sortie(const FlightData& data, const FlightPhases& phases, const st
          std::span(phases.ground_events).first(std::min<std::size_t>(phases.ground_events.size(), 3))) {
         events.push_back(fmt::format("{} ({:.0f} to {:.0f} s)", other.what, other.start_s, other.end_s));
     }
-    const auto instead = events.empty() ? std::string("no motion") : fmt::format("it has: {}", fmt::join(events, "; "));
-    const auto& clock = data.power_w.empty() ? data.altitude_m : data.power_w;
+    const auto& altitude = data.altitude_m;
+    const auto [low_m, high_m] = std::ranges::minmax(altitude.value);
+    const auto instead = !events.empty()                  ? fmt::format("it has: {}", fmt::join(events, "; "))
+                         : high_m - low_m < min_motion_m ? std::string("no motion")
+                                                         : fmt::format("its altitude stays within {:.1f} m (motor: {})",
+                                                                       high_m - low_m, phases.motor_source);
+    const auto& clock = data.power_w.empty() ? altitude : data.power_w;
     throw InputError({file}, fmt::format("has no flight in {:.0f} s", clock.time_s.back() - clock.time_s.front()),
                      instead);
 }

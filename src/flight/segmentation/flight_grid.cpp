@@ -71,6 +71,54 @@ std::size_t size_until(const FlightData& data, const ResampledFlight& grid, doub
     return static_cast<std::size_t>(std::floor(span_s / grid.step_s)) + 1;
 }
 
+/// The altitude where it is known: that of ESTIMATOR, of Paparazzi's wings, is a receiver's, which has none without a
+/// fix. After a reboot it is 0.
+Track altitude_with_fix(const FlightData& data) {
+    Track altitude = data.altitude_m;
+    const auto& fix = data.fix;
+    if (!altitude.source.starts_with("ESTIMATOR") || std::ranges::count(fix.value, 1.0) == 0) return altitude;
+    std::size_t after = 0;
+    erase_samples(altitude, [&](std::size_t i) {
+        while (after < fix.time_s.size() && fix.time_s[after] <= altitude.time_s[i]) ++after;
+        return fix.value[std::max<std::size_t>(after, 1) - 1] == 0.0 ||
+               fix.value[std::min(after, fix.value.size() - 1)] == 0.0;
+    });
+    return altitude;
+}
+
+/// The longest interval between samples between which a quantity is known [s].
+double known_interval_s(const std::vector<double>& sample_s) {
+    return std::max(long_gap_s, 3.0 * median_interval_s(sample_s));
+}
+
+/// The speed at other times; where it is not known, the lower one of both sides, and 0 beyond the ends.
+std::vector<double> shown_speed(const Track& speed, const std::vector<double>& time_s) {
+    auto speed_m_per_s = resample(speed, time_s);
+    const double known_s = known_interval_s(speed.time_s);
+    for (std::size_t i = 0; i < time_s.size(); ++i) {
+        if (interval_around_s(speed.time_s, time_s[i]) <= known_s) continue;
+        const auto after = std::ranges::upper_bound(speed.time_s, time_s[i]) - speed.time_s.begin();
+        const bool is_outside = after == 0 || after == std::ssize(speed.time_s);
+        const auto* const at = speed.value.data() + after;
+        speed_m_per_s[i] = is_outside ? 0.0 : std::min(*(at - 1), *at);
+    }
+    return speed_m_per_s;
+}
+
+/// An aircraft whose motor runs on both sides of a jump flies on: these do not separate pieces.
+void keep_jumps_in_flight(ResampledFlight& grid, const Track& motor_percent, CleanedAltitude& record) {
+    if (motor_percent.empty()) return;
+    const auto& [name, source, device, since_s, time_s, altitude_m] = record.altitude;
+    const auto runs_at = [&](double t) { return value_at(motor_percent, t) > idle_motor_percent(grid, {}); };
+    std::erase_if(record.jumps_s, [&](double t) {
+        const auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, t) - time_s.begin());
+        if (!runs_at(time_s[i - 1]) || !runs_at(t)) return false;
+        grid.jumps_in_flight.time_s.push_back(t);
+        grid.jumps_in_flight.value.push_back(std::abs(altitude_m[i] - altitude_m[i - 1]));
+        return true;
+    });
+}
+
 void require_altitude(const FlightData& data, const Track& altitude) {
     if (!altitude.empty()) return;
     const auto warnings = selection_warnings(data);
@@ -82,6 +130,13 @@ void require_altitude(const FlightData& data, const Track& altitude) {
 
 }  // namespace
 
+double interval_around_s(const std::vector<double>& sample_s, double time_s) {
+    if (sample_s.empty()) return std::numeric_limits<double>::infinity();
+    const auto after = std::ranges::upper_bound(sample_s, time_s);
+    if (after == sample_s.begin()) return *after - time_s;
+    return after == sample_s.end() ? time_s - sample_s.back() : *after - *(after - 1);
+}
+
 std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
     std::vector<double> times(span.end - span.begin);
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = time_s(span.begin + i);
@@ -89,22 +144,16 @@ std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
 }
 
 ResampledFlight make_grid(const FlightData& data) {
-    const auto& raw = data.altitude_m;
-    require_altitude(data, raw);
+    const auto& logged = data.altitude_m;
+    require_altitude(data, logged);
     ResampledFlight grid;
     const auto& power = data.power_w;
-    const auto& clock = power.empty() ? raw : power;
+    const auto& clock = power.empty() ? logged : power;
     grid.start_s = clock.time_s.front();
     const auto time_s = grid.times_s({0, size_until(data, grid, clock.time_s.back())});
-    auto altitude = clean_altitude(raw);  // on its own clock
+    auto altitude = clean_altitude(altitude_with_fix(data));  // on its own clock
     grid.unusable = std::move(altitude.unusable_reason);
     grid.warnings = std::move(altitude.warnings);
-    if (altitude.altitude.empty()) {
-        grid.altitude_m.assign(time_s.size(), 0.0);
-        grid.pieces = {{0, time_s.size()}};
-    } else {
-        add_altitude(grid, altitude, time_s);
-    }
     auto motor = motor_record(data, altitude.altitude);
     grid.motor_indicator = motor.indicator;
     grid.motor_evidence = std::move(motor.evidence);
@@ -115,7 +164,17 @@ ResampledFlight make_grid(const FlightData& data) {
     }
     if (motor.indicator == MotorIndicator::throttle) grid.throttle_percent = grid.motor_percent;
     const auto& speed = data.ground_speed_m_per_s;
-    if (!speed.empty()) grid.ground_speed_m_per_s = running_median<5>(resample(speed, time_s));
+    if (!speed.empty()) grid.ground_speed_m_per_s = running_median<5>(shown_speed(speed, time_s));
+    keep_jumps_in_flight(grid, motor.percent, altitude);
+    if (altitude.altitude.empty()) {
+        grid.altitude_m.assign(time_s.size(), 0.0);
+        grid.pieces = {{0, time_s.size()}};
+    } else {
+        add_altitude(grid, altitude, time_s);
+    }
+    grid.altitude_time_s = std::move(altitude.altitude.time_s);
+    const double known_s = known_interval_s(grid.altitude_time_s);
+    for (const double t : time_s) grid.has_altitude.push_back(interval_around_s(grid.altitude_time_s, t) <= known_s);
     return grid;
 }
 
@@ -124,7 +183,8 @@ ResampledFlight make_grid(const FlightData& data) {
 double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
     if (grid.motor_indicator == MotorIndicator::power) return idle_power_percent;
     if (grid.motor_percent.empty() || grid.ground_speed_m_per_s.empty()) return options.idle_throttle_percent;
-    return std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent;
+    return std::min(std::max(grid.min_motor_percent, 0.0) + options.idle_throttle_percent,
+                    options.flight_throttle_percent);
 }
 
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options) {
@@ -140,43 +200,39 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
         return within(grid.motor_percent, i, idle_percent) &&
                within(grid.ground_speed_m_per_s, i, options.rest_speed_m_per_s);
     };
-    const auto is_still = [&](std::size_t begin, std::size_t end, double height_m) {
-        const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, {begin, end}));
-        for (auto i = begin; i < end; ++i)
-            if (!is_idle(i)) return false;
-        return high_m - low_m <= height_m;
-    };
     // Without motor and speed, a constant height is that of a rest only near the ground.
     const bool by_altitude = grid.motor_percent.empty() && grid.ground_speed_m_per_s.empty();
-    const auto max_rest_m = [&](const IndexSpan& piece) {
-        const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, piece));
-        return by_altitude ? low_m + std::max(options.flight_height_m, 0.25 * (high_m - low_m)) : high_m;
-    };
+    const bool by_motion = !grid.motor_percent.empty() && !grid.ground_speed_m_per_s.empty();
     std::vector<bool> resting(grid.size(), false);
     const auto window = grid.steps(options.rest_s) + 1;
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
-        const double max_m = max_rest_m(piece);
-        std::size_t idle = 0;  // consecutive points
-        auto marked = piece.begin;
-        for (auto end = piece.begin + 1; end <= piece.end; ++end) {
-            idle = is_idle(end - 1) ? idle + 1 : 0;
-            if (idle < window || grid.altitude_m[end - window] > max_m) continue;
-            const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, {end - window, end}));
-            if (high_m - low_m > options.rest_height_m) continue;
-            set_part(resting, {std::max(marked, end - window), end}, true);
-            marked = end;
+        const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, piece));
+        const double max_m =
+            by_altitude ? low_m + std::max(options.flight_height_m, 0.25 * (high_m - low_m)) : high_m;
+        const auto is_still = [&](IndexSpan span, double height_m) {
+            const auto altitude_m = part_of(grid.altitude_m, span);
+            const auto [lowest_m, highest_m] = std::ranges::minmax(altitude_m);
+            const double moved_m = by_motion ? altitude_m.front() - altitude_m.back() : highest_m - lowest_m;
+            return altitude_m.front() <= max_m && moved_m <= height_m;
+        };
+        for (const auto& idle : runs_of(piece, is_idle)) {
+            auto marked = idle.begin;
+            for (auto end = idle.begin + window; end <= idle.end && marked < idle.end; ++end) {
+                if (!is_still({end - window, end}, options.rest_height_m)) continue;
+                const auto begin = std::max(marked, end - window);
+                marked = by_motion ? idle.end : end;  // from the ground, only a running motor lifts it
+                set_part(resting, {begin, marked}, true);
+            }
+            // The log may begin just before lift-off or end just after touchdown: there a shorter rest is enough, if
+            // its height is more constant.
+            const IndexSpan first{piece.begin, piece.begin + edge};
+            const IndexSpan last{piece.end - std::min(edge, piece.size()), piece.end};
+            for (const auto& at_edge : {first, last})
+                if (at_edge.begin >= idle.begin && at_edge.end <= idle.end &&
+                    is_still(at_edge, 0.3 * options.rest_height_m))
+                    set_part(resting, at_edge, true);
         }
-        if (piece.begin + edge > piece.end) continue;
-        // The log may begin just before lift-off or end just after touchdown: there a shorter rest is enough, if its
-        // height is more constant.
-        if (grid.altitude_m[piece.begin] <= max_m &&
-            is_still(piece.begin, piece.begin + edge, 0.3 * options.rest_height_m)) {
-            set_part(resting, {piece.begin, piece.begin + edge}, true);
-        }
-        if (grid.altitude_m[piece.end - 1] <= max_m &&
-            is_still(piece.end - edge, piece.end, 0.3 * options.rest_height_m))
-            set_part(resting, {piece.end - edge, piece.end}, true);
     }
     const auto gliding = gliding_points(grid, idle_percent, options.flight_height_m);
     // A rest does not extend across a jump of the altitude.

@@ -20,14 +20,17 @@ struct ResampledFlight {
     std::vector<double> throttle_percent;  ///< empty if unknown
     std::vector<double> motor_percent;     ///< see MotorRecord; empty if unknown
     double min_motor_percent = 0.0;
-    std::vector<double> ground_speed_m_per_s;  ///< empty if unknown
+    std::vector<double> ground_speed_m_per_s;  ///< empty if unknown; 0 where nothing shows motion
+    std::vector<bool> has_altitude;            ///< false in long gaps of the altitude and beyond its ends
     std::vector<IndexSpan> pieces;             ///< between jumps of the altitude; together the whole grid
     std::vector<IndexSpan> hovers;             ///< see find_hovers
+    Track jumps_in_flight;                     ///< of the altitude [m], with the motor on
     Track detector;                            ///< of the ground, as the autopilot states it: "landed"
     MotorIndicator motor_indicator = MotorIndicator::unknown;
     std::string motor_evidence;         ///< see MotorRecord
     std::vector<std::string> warnings;  ///< removed and substituted data
     std::string unusable;               ///< see CleanedAltitude
+    std::vector<double> altitude_time_s;  ///< of the samples that count
 
     std::size_t size() const { return altitude_m.size(); }
     double time_s(std::size_t index) const { return start_s + step_s * static_cast<double>(index); }
@@ -36,11 +39,19 @@ struct ResampledFlight {
     std::size_t steps(double duration_s) const { return static_cast<std::size_t>(duration_s / step_s); }
 };
 
-/// Resamples the altitude, motor and speed over the time of the power samples, or without power of the altitude. Throws
-/// InputError if the series has no altitude.
+/// Longest interval between samples of an altitude or a speed between which it is known [s].
+inline constexpr double long_gap_s = 10.0;
+
+/// Interval between the samples around a time, beyond the ends to the nearest one; infinite without samples.
+double interval_around_s(const std::vector<double>& sample_s, double time_s);
+
+/// Resamples the altitude, motor and speed over the time of the power samples, or without power of the altitude. An
+/// altitude that is a receiver's does not count without a fix. Throws InputError if the flight has no altitude.
 ResampledFlight make_grid(const FlightData& data);
 
-/// The spans in which the aircraft is at rest: see SegmentationOptions.
+/// The spans in which the aircraft is at rest: see SegmentationOptions. If motor and speed are known, the altitude needs
+/// not be constant, as long as it does not descend: that of a receiver wanders; and a rest lasts until the motor runs
+/// or the aircraft is fast.
 std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const SegmentationOptions& options);
 
 /// Maximum motor_percent of an idling motor; minimum of the maximum in a flight.

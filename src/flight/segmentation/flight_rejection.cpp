@@ -24,7 +24,6 @@ constexpr double max_climb_30_s_m_per_s = 30.0;
 constexpr double max_gps_motion_fraction = 0.25;  // of the altitude's, if it contradicts it
 constexpr double min_confirming_fraction = 0.5;   // of the altitude's, if it confirms it
 constexpr double min_hover_m = 0.3;               // of motion, above a barometer's noise
-constexpr double min_flight_m_per_s = 5.0;        // of a fixed wing
 constexpr double min_time_aloft_s = 15.0;         // above half of its height, without motor data
 constexpr double min_height_factor = 2.0;         // of flight_height_m, without motor data and speed
 constexpr double road_slope = 0.03;
@@ -79,6 +78,25 @@ std::vector<double> altitudes_within(const Track& track, const ResampledFlight& 
     return values;
 }
 
+/// The values of an activity in which it is in the air, if anywhere: with the motor of a flight, else above half of its
+/// height.
+std::vector<double> when_flown(std::span<const double> values, const FlightCandidate& c) {
+    if (c.grid.motor_indicator == MotorIndicator::unknown || c.is_motor_off()) return when_high(values, c.heights);
+    const auto motor_percent = part_of(c.grid.motor_percent, c.activity.span);
+    std::vector<double> flown;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (motor_percent[i] >= flight_motor_percent(c.grid, c.options)) flown.push_back(values[i]);
+    return flown;
+}
+
+/// Whether motor and motion show a flight while the altitude cannot.
+bool flies_by_motion(const FlightCandidate& c) {
+    if (!c.heights.are_unknown() || c.heights.wander_m < c.options.flight_height_m || c.is_motor_off()) return false;
+    const auto& speed = c.grid.ground_speed_m_per_s;
+    return !c.grid.motor_percent.empty() && !speed.empty() &&
+           fast_speed(when_flown(part_of(speed, c.activity.span), c)) >= min_flight_m_per_s;
+}
+
 std::size_t changes_within(const Track& track, const ResampledFlight& grid, IndexSpan span) {
     const double start_s = grid.time_s(span.begin);
     const double end_s = grid.time_s(span.end - 1);
@@ -90,8 +108,15 @@ std::size_t changes_within(const Track& track, const ResampledFlight& grid, Inde
     return changes;
 }
 
+std::string has_no_altitude(const FlightCandidate& c) {
+    const auto& moving = c.activity.moving;
+    for (auto i = moving.begin; i < moving.end; ++i)
+        if (c.grid.has_altitude[i]) return "";
+    return fmt::format("no altitude is known{}: nothing shows a flight", c.data.fix.empty() ? "" : ", without a fix");
+}
+
 std::string stays_low(const FlightCandidate& c) {
-    if (c.heights.max_m >= c.options.flight_height_m) return "";
+    if (c.heights.max_m >= c.options.flight_height_m || flies_by_motion(c)) return "";
     const double height_m = std::max(c.heights.max_m, 0.0);
     const double motor_percent = c.max_motor_percent();
     const bool by_power = c.grid.motor_indicator == MotorIndicator::power;
@@ -146,6 +171,7 @@ std::string rises_without_motor(const FlightCandidate& c) {
 }
 
 std::string climbs_too_fast(const FlightCandidate& c) {
+    if (flies_by_motion(c)) return "";
     const auto altitude_m = part_of(c.grid.altitude_m, c.activity.span);
     for (const auto& [over_s, limit] :
          {std::pair{5.0, max_climb_5_s_m_per_s}, std::pair{30.0, max_climb_30_s_m_per_s}}) {
@@ -202,7 +228,7 @@ std::string only_settles(const FlightCandidate& c) {
 /// From ground to ground, with slopes of roads.
 std::string moves_on_a_road(const FlightCandidate& c) {
     const auto& span = c.activity.span;
-    if (!c.activity.ground_before_m || !c.activity.ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
+    if (!c.activity.begins_at_rest() || !c.activity.ends_at_rest() || c.grid.ground_speed_m_per_s.empty()) return "";
     constexpr double max_interval_s = 5.0;  // rarer altitudes give no slope
     const auto altitudes = altitudes_within(c.data.altitude_m, c.grid, span).size();
     if (static_cast<double>(altitudes) * max_interval_s < c.grid.time_s(span.end - 1) - c.grid.time_s(span.begin))
@@ -225,8 +251,8 @@ std::string moves_on_a_road(const FlightCandidate& c) {
 
 /// No ground, no climb, and the speed of a ground vehicle. Not for a rotorcraft, which hovers, nor for a user's CSV.
 std::string only_drives(const FlightCandidate& c) {
-    const auto& [moving, span, ground_before_m, ground_after_m] = c.activity;
-    if (ground_before_m || ground_after_m || c.grid.ground_speed_m_per_s.empty()) return "";
+    const auto& moving = c.activity.moving;
+    if (c.activity.begins_at_rest() || c.activity.ends_at_rest() || c.grid.ground_speed_m_per_s.empty()) return "";
     if (is_above_ground(c) || altitude_source(c) == plain_source) return "";
     const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
     const double speed = fast_speed(part_of(c.grid.ground_speed_m_per_s, moving));
@@ -247,14 +273,14 @@ std::string stands_still(const FlightCandidate& c) {
     if (is_dead(c.data.ground_speed_m_per_s) || is_dead(c.data.east_m) || is_dead(c.data.north_m)) return "";
     const auto east_m = resample(c.data.east_m, time_s);
     const auto north_m = resample(c.data.north_m, time_s);
-    const double speed = fast_speed(when_high(resample(c.data.ground_speed_m_per_s, time_s), c.heights));
+    const double speed = fast_speed(when_flown(resample(c.data.ground_speed_m_per_s, time_s), c));
     if (speed >= min_flight_m_per_s) return "";
     const auto steps = c.grid.steps(position_window_s);
     std::vector<double> by_position(time_s.size(), 0.0);  // speed over the window
     for (std::size_t i = steps; i < by_position.size(); ++i)
         by_position[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
-    if (fast_speed(when_high(by_position, c.heights)) >= min_flight_m_per_s) return "";
-    const double extent_m = std::max(spread_of(when_high(east_m, c.heights)), spread_of(when_high(north_m, c.heights)));
+    if (fast_speed(when_flown(by_position, c)) >= min_flight_m_per_s) return "";
+    const double extent_m = std::max(spread_of(when_flown(east_m, c)), spread_of(when_flown(north_m, c)));
     if (!c.data.airspeed_m_per_s.empty() && extent_m >= standing_extent_m) return "";
     return fmt::format(
         "altitude shows a height of {:.0f} m, but the aircraft moves at {:.1f} m/s over ground, within {:.0f} m: not "
@@ -265,7 +291,7 @@ std::string stands_still(const FlightCandidate& c) {
 using Rejection = std::string (*)(const FlightCandidate&);
 
 /// The first reason counts.
-constexpr Rejection rejections[] = {stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
+constexpr Rejection rejections[] = {has_no_altitude, stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
                                     only_settles, moves_on_a_road,     only_drives,     stands_still};
 
 constexpr Rejection rotorcraft_rejections[] = {stays_on_ground, climbs_too_fast};

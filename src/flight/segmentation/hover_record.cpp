@@ -1,5 +1,7 @@
 #include "flight/segmentation/hover_record.h"
 
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +14,7 @@ constexpr double lifting_fraction = 0.7;  // of the usual effort in flight: an i
 constexpr double idle_fraction = 0.5;     // of lifting effort: below it for three seconds it does not fly
 constexpr double min_hover_s = 5.0;
 constexpr double max_detector_s = 1.5;
+constexpr double max_rest_m = 3.0;      // of descent in 1.5 s: a fall is faster
 constexpr double clear_m = 0.5;         // of the ground: a barometer's noise is less
 constexpr double max_early_s = 2.0;     // of lift-off, before the motors lift: a ramp of the throttle
 constexpr double max_wait_s = 15.0;     // of lift-off, after it: a rotorcraft may idle at much throttle
@@ -47,14 +50,39 @@ std::size_t end_of_climb(const std::vector<double>& height_m, IndexSpan span, do
     return climbs.empty() ? end : climbs.back().end;
 }
 
-/// The last point, near the one at which the motors begin to lift, before the aircraft stays clear of the ground; that
-/// one if the altitude shows none.
+/// The last point, near the one at which the motors begin to lift, before the aircraft stays clear of the ground, less
+/// the time of the climb to there; that one if the altitude shows none.
 std::size_t lift_off_of(std::span<const double> altitude_m, double clear_altitude_m, std::size_t lifting) {
     const auto from = lifting - std::min(lifting, steps(max_early_s));
     const auto until = std::min(lifting + steps(max_wait_s + level_s), altitude_m.size());
-    for (const auto& run : runs_of({from, until}, [&](std::size_t i) { return altitude_m[i] > clear_altitude_m; }))
-        if (run.size() > steps(level_s)) return run.begin == from ? lifting : run.begin - 1;
+    for (const auto& run : runs_of({from, until}, [&](std::size_t i) { return altitude_m[i] > clear_altitude_m; })) {
+        if (run.size() <= steps(level_s)) continue;
+        if (run.begin == from) return lifting;
+        const double climbed_m = altitude_m[run.begin + steps(level_s)] - altitude_m[run.begin];
+        const double climb = clear_m / std::max(climbed_m, clear_m) * static_cast<double>(steps(level_s));
+        const auto back = climbed_m > clear_m ? std::min(run.begin - 1, static_cast<std::size_t>(climb)) : 0;
+        return run.begin <= lifting ? run.begin - 1 : std::max(lifting, run.begin - 1 - back);
+    }
     return lifting;
+}
+
+/// Where an aircraft whose motors stopped is at rest, within a span; its end if it falls until there.
+std::size_t end_of_fall(const ResampledFlight& grid, IndexSpan after) {
+    constexpr auto half = steps(0.5 * level_s);
+    const auto& altitude_m = grid.altitude_m;
+    if (after.size() < 2 * half) return after.begin;
+    for (auto i = after.begin; i + 2 * half <= after.end; ++i) {
+        const double fall_m = mean(part_of(altitude_m, {i, i + half})) - mean(part_of(altitude_m, {i + half, i + 2 * half}));
+        if (fall_m <= max_rest_m) return i;
+    }
+    return after.end;
+}
+
+/// Whether the log pauses within a span.
+bool has_pause(const ResampledFlight& grid, IndexSpan within, double pause_s) {
+    for (auto i = within.begin; i < within.end; ++i)
+        if (interval_around_s(grid.altitude_time_s, grid.time_s(i)) > pause_s) return true;
+    return false;
 }
 
 }  // namespace
@@ -74,22 +102,26 @@ std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight
     const auto effort = running_median<5>(grid.motor_percent);
     const double lifting = lifting_fraction * usual_effort(effort);
     if (!(lifting > 0.0)) return {};
-    const auto is_pause = [&](IndexSpan between) {
+    const auto idles = [&](std::size_t i) { return effort[i] < idle_fraction * lifting; };
+    const double pause_s = std::max(level_s, gap_threshold_s(grid.altitude_time_s));
+    const auto lands = [&](IndexSpan between) {
         const double from_s = grid.time_s(between.begin);
         const double to_s = grid.time_s(between.end);
-        if (!armed.empty() || !landed.empty())
-            return !takes(landed, 1.0, from_s, to_s) && !takes(armed, 0.0, from_s, to_s);
-        const auto idles = [&](std::size_t i) { return effort[i] < idle_fraction * lifting; };
-        return std::ranges::none_of(runs_of(between, idles),
-                                    [&](const IndexSpan& run) { return run.size() > steps(level_s); });
+        if (takes(landed, 1.0, from_s, to_s) || takes(armed, 0.0, from_s, to_s)) return true;
+        const bool is_stated = !armed.empty() || !landed.empty();
+        return std::ranges::any_of(runs_of(between, idles), [&](const IndexSpan& run) {
+            return run.size() > steps(level_s) && (!is_stated || has_pause(grid, run, pause_s));
+        });
     };
     std::vector<IndexSpan> hovers;
     for (const auto& run : runs_of({0, grid.size()}, [&](std::size_t i) { return effort[i] >= lifting; })) {
-        if (!hovers.empty() && is_pause({hovers.back().end - 1, run.begin}))
+        if (!hovers.empty()) hovers.back().end = end_of_fall(grid, {hovers.back().end, run.begin});
+        if (!hovers.empty() && (hovers.back().end == run.begin || !lands({hovers.back().end - 1, run.begin})))
             hovers.back().end = run.end;
         else
             hovers.push_back(run);
     }
+    if (!hovers.empty()) hovers.back().end = end_of_fall(grid, {hovers.back().end, grid.size()});
     std::erase_if(hovers, [&](const IndexSpan& hover) { return hover.size() <= steps(min_hover_s); });
     return hovers;
 }
@@ -104,7 +136,7 @@ std::vector<IndexSpan> rests_between(const std::vector<IndexSpan>& hovers, const
 }
 
 SortieEdges find_hover_edges(const ResampledFlight& grid, const Activity& activity, const Heights& heights) {
-    const auto& [moving, span, ground_before_m, ground_after_m] = activity;
+    const auto& [moving, span, ground_before, ground_after] = activity;
     auto height_m = heights.height_m;
     const double airborne_m = airborne_fraction * heights.cruise_height_m;
     const auto time_s = [&](std::size_t i) { return grid.time_s(activity.span.begin + i); };
@@ -113,12 +145,12 @@ SortieEdges find_hover_edges(const ResampledFlight& grid, const Activity& activi
     const double ground_m = std::max(clear_m, std::min(drift_m, drift_fraction * heights.max_m));
     const auto is_on_ground = [&](std::size_t i) { return std::abs(height_m[i]) <= ground_m; };
     SortieEdges edges;
-    if (ground_before_m || (ground_after_m && is_on_ground(first))) {
+    if (ground_before || (ground_after && is_on_ground(first))) {
         const double clear_altitude_m = heights.ground_m + std::min(clear_m, airborne_m);
         first = lift_off_of(part_of(grid.altitude_m, {span.begin, moving.end}), clear_altitude_m, first);
         edges.lift_off_s = time_s(first);
     }
-    if (ground_after_m || (ground_before_m && is_on_ground(last))) edges.touchdown_s = time_s(last);
+    if (ground_after || (ground_before && is_on_ground(last))) edges.touchdown_s = time_s(last);
     const auto takeoff_end = edges.lift_off_s ? end_of_climb(height_m, {first, last + 1}, airborne_m) : first;
     std::ranges::reverse(height_m);  // a descent is a climb from touchdown
     const auto end = height_m.size() - 1;

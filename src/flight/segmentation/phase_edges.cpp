@@ -9,12 +9,29 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Ground level next to an activity: the last (or first) twenty seconds of the rest there; of a rotorcraft, which may
-/// fly low while the altitude drifts, five.
-double adjacent_ground_m(const ResampledFlight& grid, IndexSpan rest, bool before) {
-    const auto length = std::min(grid.steps(grid.hovers.empty() ? 20.0 : 5.0) + 1, rest.end - rest.begin);
-    return median_altitude_m(
-        grid, before ? IndexSpan{rest.end - length, rest.end} : IndexSpan{rest.begin, rest.begin + length});
+// A rotorcraft whose motors stop falls by 3 m within a second.
+constexpr double min_ground_s = 1.5;  // of a rest after a flight, or it is as low as the one before
+constexpr double max_still_m = 3.0;
+
+/// Ground level next to an activity: the last (or first) twenty seconds with an altitude of the rest there; of a
+/// rotorcraft, which may fly low while the altitude drifts, five.
+std::optional<GroundLevel> adjacent_ground(const ResampledFlight& grid, IndexSpan rest, bool before) {
+    const auto length = grid.steps(grid.hovers.empty() ? 20.0 : 5.0) + 1;
+    std::vector<double> near_m;
+    for (std::size_t k = 0; k < rest.size() && near_m.size() < length; ++k) {
+        const auto i = before ? rest.end - 1 - k : rest.begin + k;
+        if (grid.has_altitude[i]) near_m.push_back(grid.altitude_m[i]);
+    }
+    if (near_m.empty()) return std::nullopt;
+    const auto [low_m, high_m] = std::ranges::minmax(near_m);
+    return GroundLevel{median_high(near_m), high_m - low_m};
+}
+
+/// Whether a rotorcraft has not come down where its log ends soon after its motors stop.
+bool is_in_the_air(const ResampledFlight& grid, const Activity& activity, IndexSpan rest) {
+    const auto& [moving, span, before, after] = activity;
+    if (grid.hovers.empty() || !before || !after || after->altitude_m - before->altitude_m <= max_still_m) return false;
+    return rest.size() < grid.steps(min_ground_s) || after->wander_m > max_still_m;
 }
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
@@ -47,8 +64,7 @@ double crossing_s(const Flown& flown, std::size_t i, double level) {
     return flown.time_s(i) + part * flown.grid.step_s;
 }
 
-/// Start of the search for lift-off: where the motor first runs, or earlier if the aircraft is already in the air
-/// there.
+/// Start of the search for lift-off: where the motor first runs after a rest, or earlier if the log begins in the air.
 std::size_t first_flyable(const Flown& flown) {
     const auto& motor = flown.grid.motor_percent;
     if (motor.empty()) return 0;
@@ -58,16 +74,32 @@ std::size_t first_flyable(const Flown& flown) {
     std::size_t runs = 0;
     while (runs < count && motor[begin + runs] <= idle) ++runs;
     if (runs == count) return 0;
-    while (runs > 0 && flown.height(runs) > flown.airborne_m()) --runs;
+    while (!flown.activity.begins_at_rest() && runs > 0 && flown.height(runs) > flown.airborne_m()) --runs;
     return runs;
+}
+
+/// Finds lift-off and touchdown by motor and motion, where the heights are unknown: the last start of the motor before
+/// flying speed, and the rest.
+void find_edges_of_motion(Flown& flown, SortieEdges& edges) {
+    const auto& moving = flown.activity.moving;
+    const auto& motor = flown.grid.motor_percent;
+    const auto& speed = flown.grid.ground_speed_m_per_s;
+    const double percent = flight_motor_percent(flown.grid, flown.options);
+    auto first = moving.begin;
+    while (first + 1 < moving.end && (motor[first] < percent || speed[first] < min_flight_m_per_s)) ++first;
+    while (first > moving.begin && motor[first - 1] >= percent) --first;
+    flown.lift_off = first - flown.activity.span.begin;
+    flown.touchdown = moving.end - 1 - flown.activity.span.begin;
+    if (flown.activity.begins_at_rest()) edges.lift_off_s = flown.time_s(flown.lift_off);
+    if (flown.activity.ends_at_rest()) edges.touchdown_s = flown.time_s(flown.touchdown);
 }
 
 /// Finds lift-off and touchdown, as grid points and interpolated times.
 void find_ground_edges(Flown& flown, SortieEdges& edges) {
     const auto& height = flown.heights.height_m;
     const auto is_high = [&](double h) { return h > flown.airborne_m(); };
-    auto first =
-        std::find_if(height.begin() + static_cast<std::ptrdiff_t>(first_flyable(flown)), height.end(), is_high);
+    const auto flyable = first_flyable(flown);
+    auto first = std::find_if(height.begin() + static_cast<std::ptrdiff_t>(flyable), height.end(), is_high);
     if (first == height.end()) first = std::find_if(height.begin(), height.end(), is_high);
     const auto up = static_cast<std::size_t>(first - height.begin());
     const auto down =
@@ -79,6 +111,16 @@ void find_ground_edges(Flown& flown, SortieEdges& edges) {
     flown.touchdown = down;
     while (flown.touchdown + 1 < height.size() && height[flown.touchdown] > ground) ++flown.touchdown;
     if (height[flown.touchdown] <= ground) edges.touchdown_s = crossing_s(flown, flown.touchdown - 1, ground);
+    // An altitude that wanders may not be that of the ground where the aircraft is at rest.
+    const auto rest_begin = flown.activity.moving.end - flown.activity.span.begin;
+    if (!edges.lift_off_s && flown.activity.begins_at_rest()) {
+        flown.lift_off = std::min(flyable, up);
+        edges.lift_off_s = flown.time_s(flown.lift_off);
+    }
+    if (!edges.touchdown_s && flown.activity.ends_at_rest()) {
+        flown.touchdown = std::max(rest_begin, flown.lift_off + 1);
+        edges.touchdown_s = flown.time_s(flown.touchdown);
+    }
 }
 
 /// The height held after the take-off: the highest of the first hold time, seen from lift-off on, in which what was
@@ -171,14 +213,15 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
             const bool last = r == rests.size() || rests[r].begin >= piece.end;
             const auto end = last ? piece.end : rests[r].begin;
             if (end > begin) {
-                Activity activity{{begin, end}, {begin, end}, std::nullopt, std::nullopt};
+                Activity activity{{begin, end}, {begin, end}};
                 if (before != nullptr) {
-                    activity.ground_before_m = adjacent_ground_m(grid, *before, true);
-                    activity.span.begin -= std::min(reach, before->end - before->begin);
+                    activity.ground_before = adjacent_ground(grid, *before, true);
+                    activity.span.begin -= std::min(reach, before->size());
                 }
                 if (!last) {
-                    activity.ground_after_m = adjacent_ground_m(grid, rests[r], false);
-                    activity.span.end += std::min(reach, rests[r].end - rests[r].begin);
+                    activity.ground_after = adjacent_ground(grid, rests[r], false);
+                    if (is_in_the_air(grid, activity, rests[r])) activity.ground_after.reset();
+                    activity.span.end += std::min(reach, rests[r].size());
                 }
                 activities.push_back(activity);
             }
@@ -193,15 +236,21 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
 GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity& activity,
                                     const std::optional<double>& planned_ground_m) {
     const auto [lowest_m, highest_m] = std::ranges::minmax(part_of(grid.altitude_m, activity.span));
-    if (!activity.ground_before_m && !activity.ground_after_m) {
+    if (!activity.ground_before && !activity.ground_after) {
         // In the air throughout the log: the flight plan's ground, unless the log is below it.
         const double ground_m = std::min(planned_ground_m.value_or(lowest_m), lowest_m);
         return {ground_m, ground_m};
     }
-    const double after_m = activity.ground_after_m ? *activity.ground_after_m : *activity.ground_before_m;
-    const double before_m = activity.ground_before_m.value_or(after_m);
-    const bool disagree = std::abs(before_m - after_m) > std::max(10.0, (highest_m - after_m) / 3.0);
-    return {disagree ? after_m : before_m, after_m, disagree};
+    const auto after = activity.ground_after ? *activity.ground_after : *activity.ground_before;
+    const auto before = activity.ground_before.value_or(after);
+    double wander_m = std::max(before.wander_m, after.wander_m);
+    const auto& jumps = grid.jumps_in_flight;
+    for (std::size_t i = 0; i < jumps.time_s.size(); ++i)
+        if (jumps.time_s[i] >= grid.time_s(activity.span.begin) && jumps.time_s[i] < grid.time_s(activity.span.end))
+            wander_m = std::max(wander_m, jumps.value[i]);
+    const double allowed_m = std::max({10.0, (highest_m - after.altitude_m) / 3.0, wander_m});
+    const bool disagree = std::abs(before.altitude_m - after.altitude_m) > allowed_m;
+    return {disagree ? after.altitude_m : before.altitude_m, after.altitude_m, wander_m, disagree};
 }
 
 Heights compute_heights(const ResampledFlight& grid, const Activity& activity, const GroundLevels& grounds) {
@@ -214,6 +263,7 @@ Heights compute_heights(const ResampledFlight& grid, const Activity& activity, c
         heights.height_m.push_back(grid.altitude_m[activity.span.begin + i] - ground_m);
     }
     heights.ground_m = grounds.before_m;
+    heights.wander_m = grounds.wander_m;
     heights.max_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
     heights.cruise_height_m = median_of_upper_half(heights.height_m, heights.max_m);
     return heights;
@@ -223,7 +273,9 @@ SortieEdges find_edges(const ResampledFlight& grid, const Activity& activity, co
                        const SegmentationOptions& options) {
     SortieEdges edges;
     Flown flown{grid, activity, heights, options};
-    find_ground_edges(flown, edges);
+    const bool are_by_motion =
+        heights.are_unknown() && !grid.motor_percent.empty() && !grid.ground_speed_m_per_s.empty();
+    are_by_motion ? find_edges_of_motion(flown, edges) : find_ground_edges(flown, edges);
     const auto lift_off = flown.lift_off;
     const auto touchdown = flown.touchdown;
     const double reached = options.cruise_fraction * height_after_takeoff(flown);
