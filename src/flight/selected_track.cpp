@@ -277,7 +277,7 @@ void require_power(const FlightSeries& series, const std::string& messages) {
         throw InputError({series.file},
                          fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
                                      restart->to_s, series.aircraft_id, restart->message),
-                         "the file has several recordings: split it there");
+                         "the file has several recordings that overlap: separate their lines");
     }
     if (!select_power(series).track.empty()) return;
     const auto reasons = no_power_reason(series);

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/log_family.h"
+#include "telemetry/recordings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +95,7 @@ void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
             restart = {restart_from_s, seen.rbegin()->first, time_s, table.message};
         const double known_s = shows(late_s);
         if (may_overlap && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
-            faults.overlaps.push_back({known_s, known_s, time_s, table.message});
+            faults.overlaps.push_back({known_s, seen.rbegin()->first, time_s, table.message});
         seen.emplace(time_s, SeenRow{row, known_s});
     }
 }
@@ -241,6 +242,11 @@ std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sende
                       [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
     const auto& shown = faults.overlaps[enough_late_rows - 1];
     return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
+}
+
+std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log) {
+    return telemetry::split_recordings(std::move(log),
+                                       [](const auto& rows) { return find_clock_restart(rows).has_value(); });
 }
 
 std::vector<telemetry::MessageRequest> flight_messages() {

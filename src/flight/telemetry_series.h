@@ -17,6 +17,9 @@ struct LogFamily;
 /// they left, and repeated lines are equal.
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender);
 
+/// The recordings of a log (telemetry/recordings.h), each with its own clock; one that overlaps another stays with it.
+std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log);
+
 /// The messages and fields of a FlightSeries.
 std::vector<telemetry::MessageRequest> flight_messages();
 
