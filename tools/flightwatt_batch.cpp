@@ -232,6 +232,13 @@ std::vector<std::string> listed_logs(const cli::StageCall& call, const std::opti
     return paths;
 }
 
+/// Without the names of recordings behind the first, which are known after the run.
+flight::LoadOptions without_recordings(flight::LoadOptions options) {
+    std::erase_if(options.excluded, flight::is_recording_name);
+    std::erase_if(options.keep, flight::is_recording_name);
+    return options;
+}
+
 /// The changes of the run to the folder, before it makes them.
 batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments,
                            const batch::BatchOptions& options) {
@@ -247,7 +254,7 @@ batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arg
     std::vector<std::string> names;
     names.reserve(plan.logs.size());
     for (const auto& log : plan.logs) names.push_back(log.flight);
-    cli::refuse_unknown_flights(options.load, names);
+    cli::refuse_unknown_flights(without_recordings(options.load), names);
     return plan;
 }
 
@@ -282,6 +289,9 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     cli::ProgressBar bar("logs");
     auto flights = run_batch(plan.logs, options, progress_of(call, bar));
     bar.hide();
+    std::vector<std::string> names;
+    for (const auto& flight : flights) names.push_back(flight.record.flight);
+    cli::refuse_unknown_flights(options.load, names);
     return finish(call, arguments, std::move(flights), options, published);
 }
 

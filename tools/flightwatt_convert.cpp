@@ -155,7 +155,12 @@ int convert_to_series(const cli::StageCall& call, const flight::FlightFile& file
     const auto path = file.path().string();
     if (call.output && !call.output->ends_with(".csv"))
         throw UsageError(fmt::format("{} becomes a series, which is a .csv, not {}", path, *call.output));
-    const auto series = flight::read_candidates(file, std::nullopt).front();
+    auto recordings = flight::read_recordings(file, std::nullopt);
+    const auto used = flight::used_recording(recordings, file, std::nullopt);
+    const auto series = std::move(recordings[used - 1].front());
+    if (recordings.size() > 1)
+        cli::note(call, fmt::format("{}: recording {} of {} is written; flightwatt parse --recording N writes another",
+                                    path, used, recordings.size()));
     ConvertedLog converted{.text = to_csv(series)};
     converted.counts.bytes = file.text().size();
     auto warnings = series.notes;

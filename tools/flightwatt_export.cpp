@@ -64,8 +64,8 @@ struct Format {
 const std::vector<Format>& formats() {
     using enum ExportKind;
     static const std::set<ExportKind> of_aircraft{model, battery, mission};
-    static const std::set<std::string> of_tracks{"aircraft", "sortie", "exclude", "keep", "correct-idle-offset",
-                                                 "messages"};
+    static const std::set<std::string> of_tracks{
+        "aircraft", "sortie", "recording", "exclude", "keep", "correct-idle-offset", "messages"};
     static const std::vector<Format> all{
         {"geojson", ".geojson", {flight}, of_tracks},
         {"kml", ".kml", {flight}, of_tracks},
@@ -73,7 +73,7 @@ const std::vector<Format>& formats() {
         {"csv",
          ".csv",
          {flight},
-         {"message", "aircraft", "sortie", "exclude", "keep", "correct-idle-offset", "messages"}},
+         {"message", "aircraft", "sortie", "recording", "exclude", "keep", "correct-idle-offset", "messages"}},
         {"json", ".json", {model, battery}, {}},
         {"c", ".h", {model}, {}},
         {"px4", ".params", of_aircraft, {"cells"}, exchange::to_px4},
@@ -190,7 +190,11 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
     const auto& options = arguments.load;
     Exported result;
     if (const auto& message = arguments.message) {
-        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id);
+        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id,
+                                             options.recording.value_or(1));
+        if (table.recordings > 1 && !options.recording)
+            result.notes.push_back(fmt::format(
+                "{}: its rows are those of recording 1 of {}; --recording N selects another", file, table.recordings));
         if (!table.left_out.empty())
             result.notes.push_back(
                 fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));

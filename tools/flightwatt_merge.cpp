@@ -69,9 +69,11 @@ Fields<MergeOutput> record_fields(const MergeOutput*) {
 MergeOutput merge_output(const cli::StageCall& call, const batch::MergePlan& plan, const batch::BatchFlights& flights,
                          const std::vector<batch::DuplicateFlight>& copies) {
     MergeOutput output{.folder = *call.output, .flights = flights.size(), .repeated_logs = plan.duplicate_logs};
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        if (flights[i].record.accepted) ++output.accepted;
-        if (flights[i].was_up_to_date) ++output.already_there;
+    for (const auto& flight : flights) {
+        if (flight.record.accepted) ++output.accepted;
+        if (flight.was_up_to_date) ++output.already_there;
+    }
+    for (std::size_t i = 0; i < plan.sources.size(); ++i) {
         const auto& [from, before] = plan.sources[i];
         const auto& name = plan.folder.logs[i].flight;
         if (before != name) output.renamed.push_back({from, before, name});

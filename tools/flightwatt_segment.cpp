@@ -63,29 +63,55 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
     segmented.explained += cli::explanation(data, phases, power, screen_of(call));
 }
 
+/// Adds those flights of a file that --exclude does not name, and all their names. Returns their number.
+std::size_t add_file(const cli::StageCall& call, const std::string& file, const flight::LoadedFile& loaded,
+                     const flight::LoadOptions& options, std::vector<std::string>& names, SegmentedFlights& segmented) {
+    std::size_t used = 0;
+    cli::note_unused(call, file, loaded);
+    for (const auto& flight : loaded.flights) {
+        names.push_back(flight.series.flight);
+        if (options.excluded.contains(names.back())) continue;
+        const auto label = cli::label_of(file, flight);
+        cli::warn_of(call, label, flight);
+        add_flight(call, label, flight, segmented);
+        ++used;
+    }
+    return used;
+}
+
 /// The flights of several logs and folders. One that cannot be used is skipped.
 void segment_several(const cli::StageCall& call, const flight::LoadOptions& options, SegmentedFlights& segmented) {
-    const auto files = cli::files_of(call, options);
-    std::vector<std::string> names(files.size());
-    std::ranges::transform(files, names.begin(), cli::flight_of_file);
-    cli::refuse_unknown_flights(options, names);
+    std::vector<std::string> names;
     segmented.are_several = true;
     std::size_t used = 0;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        if (options.excluded.contains(names[i])) continue;
+    for (const auto& file : cli::files_of(call, options)) {
+        const auto name = cli::flight_of_file(file);
         try {
-            const auto loaded = flight::load_flight(std::filesystem::path(files[i]), options);
-            cli::warn_of(call, files[i], loaded);
-            add_flight(call, files[i], loaded, segmented);
-            ++used;
+            used += add_file(call, file, flight::load_flights(std::filesystem::path(file), options), options, names,
+                             segmented);
+            continue;
         } catch (const flight::OtherAircraftError& error) {
-            cli::note(call, fmt::format("{} is left out: {}; {}", names[i], error.what(), error.hint()));
+            cli::note(call, fmt::format("{} is left out: {}; {}", name, error.what(), error.hint()));
         } catch (const InputError& error) {
-            cli::skip_input(call, files[i], error);
+            if (!options.excluded.contains(name)) cli::skip_input(call, file, error);
         }
+        names.push_back(name);
     }
+    cli::refuse_unknown_flights(options, names);
     if (used == 0) throw InputError({}, "no flight is left", "see the reasons above");
     segmented.title = fmt::format("{} flights", used);
+}
+
+/// The flights of one file.
+void segment_file(const cli::StageCall& call, const std::string& file, const flight::LoadOptions& options,
+                  SegmentedFlights& segmented) {
+    const auto loaded = flight::load_flights(std::filesystem::path(file), options);
+    segmented.are_several = loaded.flights.size() > 1;
+    std::vector<std::string> names;
+    const auto used = add_file(call, file, loaded, options, names, segmented);
+    cli::refuse_unknown_flights(options, names);
+    if (used == 0) throw UsageError(fmt::format("--exclude {}: no other flight is given", names.front()));
+    if (used > 1) segmented.title = fmt::format("{} flights", used);
 }
 
 int segment_flights(const cli::StageCall& call, flight::LoadOptions options, bool explain) {
@@ -97,7 +123,7 @@ int segment_flights(const cli::StageCall& call, flight::LoadOptions options, boo
     if (call.inputs.size() > 1 || std::filesystem::is_directory(file, none)) {
         segment_several(call, options, segmented);
     } else {
-        add_flight(call, file, cli::load_flight(call, file, options), segmented);
+        segment_file(call, file, options, segmented);
     }
     if (!explain || call.output) {
         write_csv_result(call, segmented.csv,

@@ -11,8 +11,10 @@
 #include "flight/series_file.h"
 #include "telemetry/log_configuration.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -90,6 +92,17 @@ StoredFlight read_recorded(const std::filesystem::path& out, const LogFile& list
     return flight;
 }
 
+/// The flights of a log, the first recording's first.
+std::vector<StoredFlight> read_log_flights(const std::filesystem::path& out, const LogFile& listed, bool with_series) {
+    std::vector<StoredFlight> flights{read_recorded(out, listed, with_series)};
+    for (const auto number : std::vector(flights.front().record.recordings)) {
+        auto other = listed;
+        other.flight = flight::recording_name(listed.flight, number);
+        flights.push_back(read_recorded(out, other, with_series));
+    }
+    return flights;
+}
+
 }  // namespace
 
 std::string results_fingerprint(std::string_view series_csv, std::string_view phases_csv) {
@@ -103,6 +116,13 @@ FlightRecord read_verified_record(const std::filesystem::path& out, const std::s
     return read_intact(out, flight).record;
 }
 
+FlightRecords read_verified_records(const std::filesystem::path& out, const std::string& flight) {
+    FlightRecords records{read_verified_record(out, flight)};
+    for (const auto number : std::vector(records.front().recordings))
+        records.push_back(read_verified_record(out, flight::recording_name(flight, number)));
+    return records;
+}
+
 std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, bool with_series) {
     const auto folder = out / "flights";
     std::error_code none;
@@ -114,9 +134,11 @@ std::vector<StoredFlight> read_stored_flights(const std::filesystem::path& out, 
     register_input(out / catalogue_name);
     for (const auto* name : model_names) register_input(out / name);
     const auto listed = stored_flights(out);
-    std::vector<StoredFlight> flights(listed.size());
+    std::vector<std::vector<StoredFlight>> of_logs(listed.size());
     for_each_in_parallel(listed.size(),
-                         [&](std::size_t i) { flights[i] = read_recorded(out, listed[i], with_series); });
+                         [&](std::size_t i) { of_logs[i] = read_log_flights(out, listed[i], with_series); });
+    std::vector<StoredFlight> flights;
+    for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(flights));
     if (flights.empty()) {
         throw InputError({folder.string()}, "it has no flight record",
                          fmt::format("make them with: flightwatt batch LOGS -o {}", out.string()));

@@ -16,6 +16,12 @@ std::string results_fingerprint(std::string_view series_csv, std::string_view ph
 /// The record of a flight whose files are unchanged. Throws InputError for others.
 FlightRecord read_verified_record(const std::filesystem::path& out, const std::string& flight);
 
+/// Records of one log by recording, the first one first.
+using FlightRecords = std::vector<FlightRecord>;
+
+/// The same of all recordings of a log.
+FlightRecords read_verified_records(const std::filesystem::path& out, const std::string& flight);
+
 /// A log in the folder of a batch.
 struct StoredFlight {
     FlightRecord record;

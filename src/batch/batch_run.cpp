@@ -36,12 +36,13 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 9");
+    fingerprint.add(FLIGHTWATT_VERSION " record 10");
     fingerprint.add(log.path);
     fingerprint.add(load.aircraft_id.value_or(""));
     fingerprint.add(log.why_not_fitted);
     fingerprint.add(load.correct_idle_offset ? "idle offset corrected" : "");
     fingerprint.add(load.sortie ? fmt::format("sortie {}", *load.sortie) : "");
+    fingerprint.add(load.recording ? fmt::format("recording {}", *load.recording) : "");
     fingerprint.add(fmt::format("{} {} {} {} {} {}", segmentation.rest_s, segmentation.hold_s,
                                 segmentation.idle_throttle_percent, segmentation.cruise_fraction,
                                 segmentation.ground_fraction, segmentation.flight_height_m));
@@ -56,73 +57,103 @@ bool has_results(const BatchOptions& options, const std::string& flight) {
            std::filesystem::exists(result_path(options.out, flight, phases_suffix));
 }
 
-/// The stored result of a log, if it has this fingerprint and its files are unchanged.
-std::optional<FlightRecord> stored_result(const BatchOptions& options, const LogFile& log,
-                                          const std::string& fingerprint) {
+/// The stored results of a log, if they have this fingerprint and their files are unchanged.
+std::optional<FlightRecords> stored_results(const BatchOptions& options, const LogFile& log,
+                                            const std::string& fingerprint) {
     const OverwriteExemption own;
     std::error_code none;
     if (!std::filesystem::is_regular_file(result_path(options.out, log.flight, record_suffix), none))
         return std::nullopt;
     try {
-        auto record = read_verified_record(options.out, log.flight);
-        if (record.fingerprint != fingerprint || (!record.accepted && has_results(options, log.flight))) {
-            return std::nullopt;
-        }
-        return record;
+        auto records = read_verified_records(options.out, log.flight);
+        const bool is_current = std::ranges::all_of(records, [&](const FlightRecord& record) {
+            return record.fingerprint == fingerprint && (record.accepted || !has_results(options, record.flight));
+        });
+        return is_current ? std::optional(std::move(records)) : std::nullopt;
     } catch (const InputError&) {
         return std::nullopt;  // damaged or of another version: the log is read again
     }
 }
 
-/// Reads, segments and writes one log. Throws InputError where it cannot be used.
-FlightRecord do_accepted(const flight::FlightFile& file, const LogFile& log, const BatchOptions& options) {
-    auto load = options.load;
-    load.power_required = false;
-    auto loaded = flight::load_flight(file, load);
-    loaded.series.flight = loaded.data.flight = log.flight;
+/// Completes a record, writes it, and changes it to what later runs read.
+void conclude(FlightRecord& record, const std::string& name, const LogFile& log, const std::string& fingerprint,
+              const BatchOptions& options) {
+    record.flight = name;
+    record.log = log.path;
+    record.fingerprint = fingerprint;
+    const auto text = to_json_text(record);
+    write_result(options, name, record_suffix, text);
+    if (valid_utf8(name) == name) return;
+    record = record_from_json(text).value();  // a name that is not UTF-8 changes in JSON
+    record.flight = name;
+}
+
+/// Writes the series and phases of a flight. Returns its record.
+FlightRecord do_flight(flight::LoadedFlight loaded, const std::string& name, const LogFile& log,
+                       const BatchOptions& options) {
+    loaded.series.flight = loaded.data.flight = name;
     auto record = record_of(loaded);
     record.not_fitted_reason = log.why_not_fitted;
     const auto series_csv = to_csv(loaded.series);
     const auto phases_csv = flight::phases_csv(loaded.data, loaded.phases);
     record.results = results_fingerprint(series_csv, phases_csv);
-    write_result(options, log.flight, series_suffix, series_csv);
-    write_result(options, log.flight, phases_suffix, phases_csv);
+    write_result(options, name, series_suffix, series_csv);
+    write_result(options, name, phases_suffix, phases_csv);
     return record;
 }
 
-/// Completes the record of a log, writes it, and changes it to what later runs read.
-void conclude(FlightRecord& record, const LogFile& log, const std::string& fingerprint, const BatchOptions& options) {
-    record.flight = log.flight;
-    record.log = log.path;
-    record.fingerprint = fingerprint;
-    const auto text = to_json_text(record);
-    write_result(options, log.flight, record_suffix, text);
-    if (valid_utf8(log.flight) == log.flight) return;
-    record = record_from_json(text).value();  // a name that is not UTF-8 changes in JSON
-    record.flight = log.flight;
+/// Reads, segments and writes one log, of which the first record remains to be written. Throws InputError where it
+/// cannot be used.
+FlightRecords do_accepted(const flight::FlightFile& file, const LogFile& log, const std::string& fingerprint,
+                          const BatchOptions& options) {
+    auto load = options.load;
+    load.power_required = false;
+    auto loaded = flight::load_flights(file, load);
+    FlightRecords records(1);
+    if (loaded.unused.contains(1)) records.front().error = "recording 1: " + loaded.unused[1];
+    for (auto& flight : loaded.flights) {
+        const auto number = load.recording ? 1 : flight.recording;
+        const auto name = flight::recording_name(log.flight, number);
+        auto record = do_flight(std::move(flight), name, log, options);
+        if (number == 1) {
+            records.front() = std::move(record);
+            continue;
+        }
+        records.front().recordings.push_back(number);
+        conclude(record, name, log, fingerprint, options);
+        records.push_back(std::move(record));
+    }
+    for (const auto& [number, reason] : loaded.unused)
+        if (number > 1) records.front().warnings.push_back(fmt::format("recording {} is not used: {}", number, reason));
+    return records;
+}
+
+/// The flights of a log from their records.
+BatchFlights flights_of(FlightRecords records, bool were_up_to_date, const BatchOptions& options) {
+    BatchFlights flights;
+    for (auto& record : records) {
+        flights.push_back(without_samples(std::move(record), options.min_samples, options.load));
+        flights.back().was_up_to_date = were_up_to_date;
+    }
+    return flights;
 }
 
 /// Processes a log that exists; sets `fingerprint` as soon as it is known.
-BatchFlight do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
+BatchFlights do_existing(const LogFile& log, const BatchOptions& options, std::string& fingerprint) {
     const flight::FlightFile file(log.path, options.load);
     fingerprint = fingerprint_of(file, log, options);
-    auto record = stored_result(options, log, fingerprint);
-    const bool was_up_to_date = record.has_value();
-    if (!record) {
-        remove_results(options.out, log.flight);
-        record = do_accepted(file, log, options);
-        conclude(*record, log, fingerprint, options);
-    }
-    auto done = without_samples(*std::move(record), options.min_samples, options.load);
-    done.was_up_to_date = was_up_to_date;
-    return done;
+    if (auto records = stored_results(options, log, fingerprint)) return flights_of(*std::move(records), true, options);
+    remove_results(options.out, log.flight);
+    auto records = do_accepted(file, log, fingerprint, options);
+    conclude(records.front(), log.flight, log, fingerprint, options);
+    return flights_of(std::move(records), false, options);
 }
 
-/// The result of an earlier run of a missing log. Throws InputError where its files have changed.
-BatchFlight do_missing(const LogFile& log, const BatchOptions& options) {
+/// The results of an earlier run of a missing log. Throws InputError where its files have changed.
+BatchFlights do_missing(const LogFile& log, const BatchOptions& options) {
     const OverwriteExemption own;
-    auto kept = without_samples(read_verified_record(options.out, log.flight), options.min_samples, options.load);
-    kept.was_up_to_date = kept.log_is_missing = true;
+    auto kept = flights_of(read_verified_records(options.out, log.flight), true, options);
+    for (auto& flight : kept) flight.log_is_missing = true;
     return kept;
 }
 
@@ -158,12 +189,13 @@ BatchFlight reject(const LogFile& log, const std::string& why, bool is_of_other_
     rejected.record.log = log.path;
     if (!log.problem.empty() || log.is_missing) return rejected;  // nothing to write
     remove_results(options.out, log.flight);
-    conclude(rejected.record, log, fingerprint, options);
+    conclude(rejected.record, log.flight, log, fingerprint, options);
     return rejected;
 }
 
-BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
-    BatchFlight done;
+/// The flights of a log, the first recording's first.
+BatchFlights do_log(const LogFile& log, const BatchOptions& options) {
+    BatchFlights done;
     std::string fingerprint;
     std::string why;
     bool is_of_other_aircraft = false;
@@ -177,8 +209,8 @@ BatchFlight do_log(const LogFile& log, const BatchOptions& options) {
         why = why_rejected(log, fingerprint);
         if (log.is_missing) why += "; its log is missing: restore it, or drop the flight with --prune";
     }
-    if (!why.empty()) done = reject(log, why, is_of_other_aircraft, fingerprint, options);
-    done.is_of_this_run = log.is_of_this_run;
+    if (!why.empty()) done = {reject(log, why, is_of_other_aircraft, fingerprint, options)};
+    for (auto& flight : done) flight.is_of_this_run = log.is_of_this_run;
     return done;
 }
 
@@ -214,15 +246,22 @@ BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const 
 BatchFlights run_batch(const std::vector<LogFile>& logs, const BatchOptions& options, const BatchProgress& progress) {
     make_directories(options.out / "flights");
     make_directories(options.out / temporary_folder);
-    BatchFlights flights(logs.size());
+    std::vector<BatchFlights> of_logs(logs.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     const auto work = [&](std::size_t i) {
-        flights[i] = do_log(logs[i], options);
+        of_logs[i] = do_log(logs[i], options);
         const std::lock_guard lock(mutex);
-        progress(++done, logs.size(), flights[i]);
+        ++done;
+        for (const auto& flight : of_logs[i]) progress(done, logs.size(), flight);
     };
     for_each_in_parallel(logs.size(), work, options.jobs);
+    return joined(std::move(of_logs));
+}
+
+BatchFlights joined(std::vector<BatchFlights> of_logs) {
+    BatchFlights flights;
+    for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(flights));
     return flights;
 }
 

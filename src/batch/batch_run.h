@@ -35,7 +35,7 @@ struct BatchFlight {
     Selection selection;
 };
 
-/// In the order of the batch's logs.
+/// In the order of the batch's logs, and of the recordings of each.
 using BatchFlights = std::vector<BatchFlight>;
 
 struct BatchOptions {
@@ -45,7 +45,10 @@ struct BatchOptions {
     std::size_t min_samples = 8;
 };
 
-/// Called for each finished log, from one thread at a time.
+/// The flights of all logs from those of each.
+BatchFlights joined(std::vector<BatchFlights> of_logs);
+
+/// Called for each flight of a finished log, from one thread at a time; `done` and `all` are of logs.
 using BatchProgress = std::function<void(std::size_t done, std::size_t all, const BatchFlight& flight)>;
 
 /// Parses and segments every log, several at a time, into OUT/flights/NAME.series.csv, NAME.phases.csv and

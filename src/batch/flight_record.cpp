@@ -176,6 +176,7 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("results", &R::results),
             field("accepted", &R::accepted),
             field("is_of_other_aircraft", &R::is_of_other_aircraft),
+            field("recordings", &R::recordings),
             field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
             field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
             field("payload_kg", &R::payload_kg, "payload, if the file states it", csv_column{}),

@@ -30,15 +30,17 @@ struct RecordedPhase {
     flight::PhaseStatistics statistics;
 };
 
-/// Result of one log, which is not read again for a fit or a report.
+/// Result of one recording of a log, which is not read again for a fit or a report. The first recording of a log always
+/// has one.
 struct FlightRecord {
     std::string flight;
     std::string log;          ///< the path it was read from
     std::string fingerprint;  ///< of the log's content, its .log and the options
     std::string results;      ///< fingerprint of the series and phases that were written; empty if rejected
     bool accepted = false;
-    std::string error;                  ///< reason of a rejected log
-    bool is_of_other_aircraft = false;  ///< rejected as it has no data of --aircraft
+    std::string error;                    ///< reason of a rejected log
+    bool is_of_other_aircraft = false;    ///< rejected as it has no data of --aircraft
+    std::vector<std::size_t> recordings;  ///< of the file's first one: numbers of the others with a flight
     std::string aircraft_id;
     std::string aircraft_name;
     std::optional<double> payload_kg;  ///< that the log states

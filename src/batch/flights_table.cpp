@@ -117,7 +117,8 @@ Totals totals_of(const BatchFlights& flights) {
         if (record.accepted && record.no_power_reason.empty()) ++totals.with_power;
         if (!flight.is_of_this_run) continue;
         ++totals.of_this_run;
-        if (!record.accepted && !record.is_of_other_aircraft) ++totals.rejected_of_this_run;
+        const bool is_used = record.accepted || !record.recordings.empty();
+        if (!is_used && !record.is_of_other_aircraft) ++totals.rejected_of_this_run;
     }
     return totals;
 }

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/fingerprint.h"
 #include "base/text.h"
-#include "flight/column_map.h"
+#include "flight/flight_file.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
@@ -118,7 +118,7 @@ std::vector<LogFile> each_once(std::vector<LogFile> logs) {
 
 /// The name, or of one that is too long for files its beginning and a fingerprint.
 std::string file_name_of(std::string name) {
-    constexpr std::size_t max_size = 255 - std::string_view("_999.record.json").size();
+    constexpr std::size_t max_size = 255 - std::string_view("_999@64.record.json").size();
     constexpr std::size_t prefix = 200;
     if (name.size() <= max_size) return name;
     Fingerprint fingerprint;
@@ -143,6 +143,7 @@ void UniqueNames::reserve(const std::string& name) { taken_.insert(name); }
 std::string UniqueNames::assign(const std::filesystem::path& log) {
     auto name = file_name_of(telemetry::flight_name(log));
     if (name.empty()) name = "unnamed";
+    if (flight::is_recording_name(name)) name += "_";
     if (taken_.insert(name).second) return name;
     // With thousands of one name the search resumes where it stopped.
     for (auto& use = next_.try_emplace(name, 2).first->second;; ++use) {

@@ -5,6 +5,8 @@
 #include "base/overwrite_guard.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
+#include "flight/flight_file.h"
+#include "telemetry/recordings.h"
 
 #include <algorithm>
 #include <iterator>
@@ -133,7 +135,10 @@ std::filesystem::path result_path(const std::filesystem::path& out, std::string_
 
 void remove_results(const std::filesystem::path& out, const std::string& flight) {
     std::error_code ignored;
-    for (const auto* ending : result_suffixes) std::filesystem::remove(result_path(out, flight, ending), ignored);
+    const bool may_have_others = std::filesystem::exists(result_path(out, flight, record_suffix), ignored);
+    for (std::size_t number = 1; number <= (may_have_others ? telemetry::max_recordings : 1); ++number)
+        for (const auto* ending : result_suffixes)
+            std::filesystem::remove(result_path(out, flight::recording_name(flight, number), ending), ignored);
 }
 
 std::vector<LogFile> read_manifest(const std::filesystem::path& out) {

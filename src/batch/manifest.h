@@ -35,7 +35,7 @@ inline constexpr std::array model_names{model_name,     model_errors_name, fit_n
 /// Path of one of these: OUT/flights/NAME.series.csv, ...
 std::filesystem::path result_path(const std::filesystem::path& out, std::string_view flight, const char* ending);
 
-/// Removes the files of a flight.
+/// Removes the files of a log, of all its recordings.
 void remove_results(const std::filesystem::path& out, const std::string& flight);
 
 /// Reads a JSON file of a batch. Throws InputError for a newer format, and with `problem` and `hint` for text that is

@@ -152,9 +152,9 @@ void copy_renamed(const std::filesystem::path& out, const MergedFlight& source, 
     write(record_suffix, to_json_text(record));
 }
 
-/// Copies a flight under that name.
-BatchFlight merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
-                         std::size_t needed_samples) {
+/// Copies a flight of one recording under that name.
+BatchFlight merge_recording(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
+                            std::size_t needed_samples) {
     const OverwriteExemption own;  // results of batches, not inputs
     const auto text = read_file(result_path(source.from, source.flight, record_suffix));
     auto record = read_verified_record(source.from, source.flight);
@@ -166,6 +166,17 @@ BatchFlight merge_flight(const std::filesystem::path& out, const MergedFlight& s
     }
     auto merged = without_samples(std::move(record), needed_samples, {});
     merged.was_up_to_date = is_up_to_date;
+    return merged;
+}
+
+/// Copies the flights of a log, the first recording's under that name.
+BatchFlights merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
+                          std::size_t needed_samples) {
+    BatchFlights merged{merge_recording(out, source, name, needed_samples)};
+    for (const auto number : std::vector(merged.front().record.recordings)) {
+        const MergedFlight other{source.from, flight::recording_name(source.flight, number)};
+        merged.push_back(merge_recording(out, other, flight::recording_name(name, number), needed_samples));
+    }
     return merged;
 }
 
@@ -201,15 +212,16 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
                            const BatchProgress& progress) {
     make_directories(out / temporary_folder);
-    BatchFlights flights(plan.sources.size());
+    std::vector<BatchFlights> of_logs(plan.sources.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
-    for_each_in_parallel(flights.size(), [&](std::size_t i) {
-        flights[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples);
+    for_each_in_parallel(of_logs.size(), [&](std::size_t i) {
+        of_logs[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples);
         const std::lock_guard lock(mutex);
-        progress(++done, flights.size(), flights[i]);
+        ++done;
+        for (const auto& flight : of_logs[i]) progress(done, of_logs.size(), flight);
     });
-    return flights;
+    return joined(std::move(of_logs));
 }
 
 }  // namespace flightwatt::batch

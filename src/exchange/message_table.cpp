@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "flight/series_file.h"
+#include "flight/telemetry_series.h"
 #include "telemetry/message_definition.h"
 
 #include <algorithm>
@@ -42,10 +43,13 @@ std::vector<std::string> fields_of(const std::optional<telemetry::LogConfigurati
 
 telemetry::TelemetryLog read_message(const flight::FlightFile& file,
                                      std::optional<telemetry::LogConfiguration> configuration,
-                                     const telemetry::MessageRequest& wanted) {
-    if (!file.framing()) return parse_telemetry(file.text(), file.path(), std::move(configuration), {wanted});
+                                     const telemetry::MessageRequest& message) {
+    auto wanted = flight::flight_messages();  // they show the recordings
+    std::erase_if(wanted, [&](const telemetry::MessageRequest& other) { return other.message == message.message; });
+    wanted.push_back(message);
+    if (!file.framing()) return parse_telemetry(file.text(), file.path(), std::move(configuration), wanted);
     return flight::with_binary_log(file, [&](const telemetry::BinaryLog& log) {
-        return parse_binary_telemetry(log, std::move(configuration).value(), {wanted});
+        return parse_binary_telemetry(log, std::move(configuration).value(), wanted);
     });
 }
 
@@ -112,34 +116,42 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
     return result;
 }
 
-/// The table of a log that defines its messages.
-MessageCsv autopilot_table(const flight::FlightFile& file, const std::string& message) {
+/// The log of another autopilot with that message, and the times of all others, which show the recordings.
+telemetry::TelemetryLog read_autopilot_message(const flight::FlightFile& file, const std::string& message) {
     const auto read = [&](const std::vector<telemetry::MessageRequest>& wanted) {
         return read_autopilot_log(file.text(), file.autopilot().value(), file.path(), wanted);
     };
-    for (auto& of : read({}).messages) {
-        if (of.name != message) continue;
-        const auto found = read({{message, std::move(of.fields)}});
-        if (const auto* table = found.log.senders.front().table(message)) return as_csv(*table);
-    }
-    refuse_absent(file, message, true);
+    std::vector<telemetry::MessageRequest> wanted;
+    for (auto& [name, count, fields] : read({}).messages)
+        wanted.push_back({name, name == message ? std::move(fields) : std::vector<std::string>()});
+    return read(wanted).log;
+}
+
+telemetry::TelemetryLog read_message_of(const flight::FlightFile& file, const std::string& message) {
+    if (file.autopilot()) return read_autopilot_message(file, message);
+    std::optional<telemetry::LogConfiguration> configuration;
+    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
+    const auto fields = fields_of(configuration, message);
+    if (fields.empty()) refuse_absent(file, message, false);
+    return read_message(file, std::move(configuration), {message, fields});
 }
 
 }  // namespace
 
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
-                         const std::optional<std::string>& sender) {
+                         const std::optional<std::string>& sender, std::size_t recording) {
     if (file.is_series()) {
         throw InputError({file.path().string()}, "is a series, which contains tracks and no messages",
                          "give the log that it was made from, or remove --message");
     }
-    if (file.autopilot()) return autopilot_table(file, message);
-    std::optional<telemetry::LogConfiguration> configuration;
-    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
-    const auto fields = fields_of(configuration, message);
-    if (fields.empty()) refuse_absent(file, message, false);
-    const auto log = read_message(file, std::move(configuration), {message, fields});
-    return as_csv(table_of(log, file, message, sender));
+    const auto recordings = flight::recordings_of(read_message_of(file, message));
+    if (recording > recordings.size()) {
+        throw InputError({file.path().string()},
+                         fmt::format("has no recording {}: there are {}", recording, recordings.size()));
+    }
+    auto table = as_csv(table_of(recordings[recording - 1], file, message, file.autopilot() ? std::nullopt : sender));
+    table.recordings = recordings.size();
+    return table;
 }
 
 std::string series_table(const flight::FlightSeries& series) {

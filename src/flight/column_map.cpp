@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "flight/series_file.h"
 #include "flight/sources/log_family.h"
+#include "flight/telemetry_series.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
 
@@ -140,29 +141,51 @@ bool is_series_header(const std::vector<std::string>& header) {
 class MappedRows {
   public:
     MappedRows(const ColumnMap& map, std::string file)
-        : map_(map), file_(std::move(file)), values_(map.tracks.size()) {}
+        : map_(map), file_(std::move(file)), rows_{"row", {}, std::vector<telemetry::Column>(map.tracks.size())} {}
 
     void read_row(const CsvRowView& row) {
-        if (places_.empty()) return bind(row);
+        const bool is_header = places_.empty() || row.cells[time_place_].text == map_.time_column;
+        if (is_header) return bind(row);  // also of a file that was appended
         const double time_s = number(row, time_place_, 0.0) / map_.ticks_per_s;
         if (std::isnan(time_s)) return;
-        if (!first_s_) first_s_ = map_.is_unix_time ? time_s : 0.0;
-        time_s_.push_back(time_s - *first_s_);
+        rows_.time_s.push_back(time_s);
+        rows_.places.push_back(row.line);
         for (std::size_t t = 0; t < places_.size(); ++t) {
             double value = map_.tracks[t].combine == Combine::norm ? 0.0 : 1.0;
             for (const auto place : places_[t]) {
-                const double cell = number(row, place, time_s_.back());
+                const double cell = number(row, place, time_s);
                 value = map_.tracks[t].combine == Combine::norm ? std::hypot(value, cell) : value * cell;
             }
-            values_[t].push_back(value * map_.tracks[t].factor);
+            rows_.columns[t].values.push_back(value * map_.tracks[t].factor);
         }
     }
 
-    FlightSeries take() {
+    /// A series for each recording.
+    std::vector<FlightSeries> take() {
+        telemetry::TelemetryLog log{file_, "", {}, {{"", {std::move(rows_)}}}, {}, {}, 0};
+        if (!skipped_.lines.empty()) log.skipped.push_back(std::move(skipped_));
+        std::vector<FlightSeries> recordings;
+        for (auto& recording : recordings_of(std::move(log))) recordings.push_back(series_of(std::move(recording)));
+        return recordings;
+    }
+
+    std::size_t rows() const { return rows_.time_s.size(); }
+
+  private:
+    FlightSeries series_of(telemetry::TelemetryLog log) const {
+        using AtTime = telemetry::SkippedLines::AtTime;
         FlightSeries series;
-        for (std::size_t t = 0; t < values_.size(); ++t) {
+        series.clock_restart = find_clock_restart(log.senders.front());
+        auto& [message, time_s, columns, places] = log.senders.front().tables.front();
+        if (map_.is_unix_time) {
+            series.start_clock_s = time_s.front();
+            for (auto& time : time_s) time -= *series.start_clock_s;
+            for (auto& skipped : log.skipped)
+                for (auto& at : skipped.lines) at.time_s -= *series.start_clock_s;
+        }
+        for (std::size_t t = 0; t < columns.size(); ++t) {
             const auto& mapped = map_.tracks[t];
-            auto track = make_track(time_s_, values_[t], merge_of(mapped.name));
+            auto track = make_track(time_s, columns[t].values, merge_of(mapped.name));
             track.name = mapped.name;
             track.source = mapped.columns.empty()            ? "column map"
                            : mapped.combine == Combine::norm ? fmt::format("|{}|", fmt::join(mapped.columns, ", "))
@@ -170,18 +193,16 @@ class MappedRows {
             series.tracks.push_back(std::move(track));
         }
         sort_tracks(series.tracks);
-        if (map_.is_unix_time) series.start_clock_s = first_s_;
-        if (!skipped_.lines.empty()) series.skipped.push_back(std::move(skipped_));
+        series.skipped = std::move(log.skipped);
+        for (auto& skipped : series.skipped) std::ranges::stable_sort(skipped.lines, {}, &AtTime::time_s);
         return series;
     }
 
-    std::size_t rows() const { return time_s_.size(); }
-
-  private:
     void bind(const CsvRowView& header) {
         CsvTable table{file_, {}, {}};
         for (const auto& cell : header.cells) table.columns.emplace_back(cell.text);
         time_place_ = column_index(table, map_.time_column);
+        places_.clear();
         for (const auto& track : map_.tracks) {
             auto& places = places_.emplace_back();
             for (const auto& column : track.columns) places.push_back(column_index(table, column));
@@ -194,7 +215,7 @@ class MappedRows {
         const double value = number_or_nan(text);
         if (!std::isnan(value) || text.empty()) return value;
         auto& lines = skipped_.lines;
-        if (!lines.empty() && lines.back().time_s >= time_s)
+        if (!lines.empty() && lines.back().first_line == row.line)
             ++lines.back().count;
         else
             lines.push_back({time_s, 1, row.line});
@@ -205,9 +226,7 @@ class MappedRows {
     std::string file_;
     std::size_t time_place_ = 0;
     std::vector<std::vector<std::size_t>> places_;  ///< of the columns of each track
-    std::vector<double> time_s_;
-    std::vector<std::vector<double>> values_;
-    std::optional<double> first_s_;
+    telemetry::MessageTable rows_;                  ///< a column for each track
     telemetry::SkippedLines skipped_{"cells that are no numbers", {}, telemetry::SkippedLines::Unit::line};
 };
 
@@ -266,18 +285,21 @@ bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::f
     }
 }
 
-FlightSeries parse_mapped_csv(std::string_view csv, const std::filesystem::path& file, const ColumnMap& map) {
+std::vector<FlightSeries> parse_mapped_csv(std::string_view csv, const std::filesystem::path& file,
+                                           const ColumnMap& map) {
     MappedRows rows(map, file.string());
     for_each_csv_row(csv, file.string(), [&](const CsvRowView& row) { rows.read_row(row); });
     if (rows.rows() < 2) throw InputError({file.string()}, "has fewer than two rows with a time");
-    auto series = rows.take();
-    series.file = file.string();
-    series.flight = telemetry::flight_name(file);
-    series.aircraft_id = map.aircraft_id;
-    series.aircraft_name = map.aircraft_name;
-    series.firmware = map.firmware;
-    series.current_origin = map.current_origin;
-    return series;
+    auto recordings = rows.take();
+    for (auto& series : recordings) {
+        series.file = file.string();
+        series.flight = telemetry::flight_name(file);
+        series.aircraft_id = map.aircraft_id;
+        series.aircraft_name = map.aircraft_name;
+        series.firmware = map.firmware;
+        series.current_origin = map.current_origin;
+    }
+    return recordings;
 }
 
 }  // namespace flightwatt::flight

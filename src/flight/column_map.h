@@ -46,8 +46,9 @@ std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesyst
 /// Whether a CSV file is a flight, by its header: a series, or one with a map.
 bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::filesystem::path>& columns);
 
-/// The series of a CSV by its map. A cell that is no number is counted and left out. Throws InputError for a column
-/// that is missing, and for fewer than two rows.
-FlightSeries parse_mapped_csv(std::string_view csv, const std::filesystem::path& file, const ColumnMap& map);
+/// The series of a CSV by its map, one for each recording. A cell that is no number is counted and left out. Throws
+/// InputError for a column that is missing, and for fewer than two rows.
+std::vector<FlightSeries> parse_mapped_csv(std::string_view csv, const std::filesystem::path& file,
+                                           const ColumnMap& map);
 
 }  // namespace flightwatt::flight

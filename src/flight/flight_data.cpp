@@ -131,7 +131,7 @@ void require_power(const FlightData& data, const std::string& messages) {
         throw InputError({data.file},
                          fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
                                      restart->to_s, data.aircraft_id, restart->message),
-                         "the file has several recordings: split it there");
+                         "the file has several recordings that overlap: separate their lines");
     }
     if (!data.power_w.empty()) return;
     const auto reasons = no_power_reason(data);

@@ -1,19 +1,12 @@
 #include "flight/load_flight.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/overwrite_guard.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
 #include "flight/select.h"
-#include "flight/series_file.h"
-#include "flight/sources/log_family.h"
-#include "flight/telemetry_series.h"
 
 #include <algorithm>
 #include <new>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,34 +26,9 @@ std::string shown_census(const FlightFile& file) {
     return fmt::format("{}{}", fmt::join(names, ", "), more ? ", ..." : "");
 }
 
-telemetry::TelemetryLog read_log(const FlightFile& file) {
-    std::optional<telemetry::LogConfiguration> configuration;
-    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
-    if (file.framing()) {
-        return with_binary_log(file, [&](const telemetry::BinaryLog& log) {
-            return telemetry::read_binary_telemetry(log, std::move(configuration).value(), flight_messages());
-        });
-    }
-    return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
-}
-
-/// A synthetic log without a .log is recognised by its first line, Paparazzi's simulator NPS by its own messages.
-void name_unflown(const FlightFile& file, std::vector<FlightSeries>& candidates) {
-    if (file.framing()) return;
-    const std::string_view text = file.text();
-    const auto has = [](std::string_view in, std::string_view what) { return in.find(what) != std::string_view::npos; };
-    const bool is_synthetic = has(text.substr(0, text.find('\n')), "INFO_MSG \"SYNTHETIC:");
-    const bool is_simulated = has(text, "NPS_");
-    for (auto& series : candidates) {
-        if (is_synthetic && series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
-        if (is_simulated && has(text, fmt::format(" {} NPS_", series.aircraft_id)))
-            series.aircraft_name += series.aircraft_name.empty() ? "NPS" : " NPS";
-    }
-}
-
 /// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
-FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
-    auto series = choose_aircraft(read_candidates(file, aircraft_id));
+FlightSeries choose_series(const FlightFile& file, Candidates candidates, bool power_required) {
+    auto series = choose_aircraft(std::move(candidates));
     const auto data = select_tracks(series);
     const bool needs_power = power_required || data.altitude_m.time_s.size() < min_altitudes;
     if (data.clock_restart || (needs_power && data.power_w.empty())) require_power(data, shown_census(file));
@@ -133,141 +101,44 @@ void warn_of_missing_ends(LoadedFlight& loaded) {
     }
 }
 
-/// The series of all senders of telemetry, each with the skipped lines of the whole log.
-std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
-    constexpr std::size_t max_candidates = 32;
-    constexpr std::size_t max_skips = 10'000'000;
-    auto senders = telemetry_senders(log);
-    if (senders.empty()) senders.emplace_back();
-    auto skipped = std::exchange(log.skipped, {});
-    std::size_t skips = 0;
-    for (const auto& kind : skipped) skips += kind.lines.size();
-    if (senders.size() > max_candidates || (senders.size() > 1 && skips * senders.size() > max_skips)) {
-        throw InputError({log.data_file.string()},
-                         fmt::format("{} senders may be aircraft: {}", senders.size(), short_list(senders)),
-                         "select one with --aircraft ID");
-    }
-    std::vector<FlightSeries> candidates;
-    for (const auto& sender : senders) {
-        candidates.push_back(flight_series(log, sender));
-        auto& of_sender = candidates.back().skipped;
-        of_sender.insert(of_sender.begin(), skipped.begin(), skipped.end());
-    }
-    return candidates;
-}
-
-/// Why a .log cannot be used; empty if it can.
-std::string error_of_definitions(const std::filesystem::path& log, bool for_frames) {
-    try {
-        const auto text = read_file(log, telemetry::max_log_configuration_bytes);
-        telemetry::parse_log_configuration(text, log);
-        if (for_frames) telemetry::parse_message_dictionary(text, log);
-    } catch (const InputError& error) {
-        return fmt::format("{}: {}", log.string(), error.what());
-    }
-    return "";
-}
-
-FlightSeries read_autopilot(const FlightFile& file) {
-    const auto format = file.autopilot().value();
-    using telemetry::AutopilotFormat;
-    const auto& family = format == AutopilotFormat::ulog     ? px4_family()
-                         : format == AutopilotFormat::sdlog2 ? sdlog2_family()
-                                                             : ardupilot_family();
-    return family_series(read_autopilot_log(file.text(), format, file.path(), family_messages(family)), family);
-}
-
-std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    std::vector<FlightSeries> candidates;
-    std::vector<std::string> ids;
-    if (file.is_series() || file.autopilot()) {
-        const auto& map = file.column_map();
-        candidates.push_back(map                ? parse_mapped_csv(file.text(), file.path(), *map)
-                             : file.is_series() ? parse_series_csv(file.text(), file.path())
-                                                : read_autopilot(file));
-        ids.push_back(candidates.front().aircraft_id);
-        if (!aircraft_id || ids.front().empty() || ids.front() == *aircraft_id) return candidates;
-    } else {
-        auto log = read_log(file);
-        for (const auto& sender : log.senders) ids.push_back(sender.id);
-        if (!aircraft_id) {
-            candidates = all_candidates(std::move(log));
-            name_unflown(file, candidates);
-            return candidates;
-        }
-        if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            candidates.push_back(flight_series(log, *aircraft_id));
-            name_unflown(file, candidates);
-            return candidates;
-        }
-    }
-    throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
-                             "the log has " + short_list(ids));
+LoadedFlight load_candidates(const FlightFile& file, Candidates candidates, const LoadOptions& options) {
+    auto loaded = segment_and_check(choose_series(file, std::move(candidates), options.power_required), options);
+    warn_of_missing_ends(loaded);  // not in segment_and_check: predict processes logs that end in the air
+    return loaded;
 }
 
 }  // namespace
 
-FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
-                       const std::optional<std::filesystem::path>& messages,
-                       const std::optional<std::filesystem::path>& columns)
-    : path_(path) {
-    std::error_code error;
-    is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
-    if (is_series_) {
-        text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
-        require_kind(text_, FileKind::log, path.string());
-        column_map_ = column_map_of(text_, path, columns);
-        return;
-    }
-    text_ = telemetry::read_data_file(path, max_bytes);
-    autopilot_ = telemetry::detect_autopilot_format(text_);
-    if (autopilot_) return;
-    require_kind(text_, FileKind::log, path.string());
-    framing_ = telemetry::detect_binary_framing(text_);
-    auto log = telemetry::find_log_file(path);
-    if (log && messages) log_error_ = error_of_definitions(*log, framing_.has_value());
-    if (!log || !log_error_.empty()) log = messages;
-    if (log) {
-        log_file_ = *log;
-        log_text_ = read_file(*log, telemetry::max_log_configuration_bytes);
-    }
-    if (!log_error_.empty()) log_error_ += fmt::format(": the definitions are those of {}", log_file_.string());
-}
-
 FlightFile::FlightFile(const std::filesystem::path& path, const LoadOptions& options)
     : FlightFile(path, options.max_log_bytes, options.messages, options.columns) {}
 
-telemetry::MessageDictionary FlightFile::definitions() const {
-    if (!log_text_) {
-        throw InputError({path_.string()}, "is a binary log, and no .log defines its messages",
-                         "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
+std::size_t used_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
+                           const std::optional<std::size_t>& requested) {
+    if (requested && *requested > recordings.size()) {
+        throw InputError({file.path().string()},
+                         fmt::format("has no recording {}: there are {}", *requested, recordings.size()));
     }
-    return telemetry::parse_message_dictionary(*log_text_, log_file_);
-}
-
-std::vector<std::string> census_of(const FlightFile& file) {
-    std::vector<std::string> names;
-    if (file.is_series()) return names;
-    if (file.autopilot()) {
-        for (const auto& of : read_autopilot_log(file.text(), *file.autopilot(), file.path(), {}).messages)
-            names.push_back(fmt::format("{} {}", of.name, of.count));
-        return names;
+    if (requested && recordings[*requested - 1].empty()) {
+        throw OtherAircraftError({file.path().string()},
+                                 fmt::format("the aircraft sent nothing in recording {}", *requested));
     }
-    const auto counts = file.framing()
-                            ? with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
-                            : telemetry::count_messages(file.text());
-    for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
-    return names;
+    if (requested || recordings.size() == 1) return requested.value_or(1);
+    const auto flew = [](const FlightSeries& series) {
+        return !series.clock_restart && not_flown_reason(series).empty();
+    };
+    const auto found = std::ranges::find_if(
+        recordings, [&](const Candidates& candidates) { return std::ranges::any_of(candidates, flew); });
+    const auto used = found == recordings.end() ? std::ranges::find_if_not(recordings, &Candidates::empty) : found;
+    return static_cast<std::size_t>(used - recordings.begin()) + 1;
 }
 
-std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    auto candidates = parse_candidates(file, aircraft_id);
-    for (auto& series : candidates)
-        if (!file.log_error().empty()) series.notes.push_back(file.log_error());
-    return candidates;
+Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+    auto recordings = read_recordings(file, aircraft_id);
+    return std::move(recordings[used_recording(recordings, file, std::nullopt) - 1]);
 }
 
-FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
+FlightSeries choose_aircraft(Candidates candidates) {
+    if (candidates.empty()) throw OtherAircraftError({}, "the aircraft sent nothing");
     if (candidates.size() == 1) return std::move(candidates.front());
     std::vector<std::string> reasons(candidates.size());
     std::ranges::transform(candidates, reasons.begin(), not_flown_reason);
@@ -332,22 +203,48 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
     return loaded;
 }
 
-LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
-    auto loaded = segment_and_check(read_series(file, options.aircraft_id, options.power_required), options);
-    warn_of_missing_ends(loaded);  // not in segment_and_check: predict processes logs that end in the air
-    return loaded;
+LoadedFile load_flights(const FlightFile& file, const LoadOptions& options) {
+    auto recordings = read_recordings(file, options.aircraft_id);
+    LoadedFile loaded{.recordings = recordings.size()};
+    const bool is_only = options.recording || recordings.size() == 1;
+    const auto first = is_only ? used_recording(recordings, file, options.recording) : 1;
+    for (auto number = first; number <= (is_only ? first : recordings.size()); ++number) {
+        try {
+            loaded.flights.push_back(load_candidates(file, std::move(recordings[number - 1]), options));
+            loaded.flights.back().recording = number;
+        } catch (const InputError& error) {
+            if (is_only) throw;
+            loaded.unused[number] = error.what() + parenthesised(error.hint());
+        }
+    }
+    if (!loaded.flights.empty()) return loaded;
+    std::vector<std::string> reasons;
+    for (const auto& [number, reason] : loaded.unused)
+        reasons.push_back(fmt::format("recording {}: {}", number, reason));
+    throw InputError({file.path().string()}, fmt::format("has {} recordings without a flight: {}", recordings.size(),
+                                                         fmt::join(reasons, "; ")));
 }
 
-LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
+LoadedFile load_flights(const std::filesystem::path& path, const LoadOptions& options) {
     try {
-        return load_flight(FlightFile(path, options), options);
+        return load_flights(FlightFile(path, options), options);
     } catch (const std::bad_alloc&) {
         throw InputError({path.string()}, "cannot be read: not enough memory");
     }
 }
 
+LoadedFlight first_flight(LoadedFile file) {
+    const auto flew = std::ranges::find_if(file.flights, [](const auto& of) { return !of.phases.sorties.empty(); });
+    return std::move(flew == file.flights.end() ? file.flights.front() : *flew);
+}
+
+LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options) {
+    return first_flight(load_flights(path, options));
+}
+
 FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft_id) {
-    return read_series(FlightFile(path), aircraft_id, true);
+    const FlightFile file(path);
+    return choose_series(file, read_candidates(file, aircraft_id), true);
 }
 
 }  // namespace flightwatt::flight

@@ -1,13 +1,10 @@
 #pragma once
 
-#include "base/error.h"
-#include "flight/column_map.h"
 #include "flight/flight_data.h"
+#include "flight/flight_file.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
 #include "flight/segmentation.h"
-#include "telemetry/autopilot_log.h"
-#include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 
 #include <cstddef>
@@ -36,6 +33,7 @@ struct LoadOptions {
     std::size_t max_log_bytes = telemetry::default_max_log_bytes;  ///< see read_data_file
     std::optional<std::filesystem::path> messages = {};            ///< see FlightFile
     std::optional<std::filesystem::path> columns = {};             ///< see FlightFile
+    std::optional<std::size_t> recording = {};                     ///< from 1: the others of a file are ignored
 };
 
 /// Quality of a segmented series.
@@ -50,70 +48,26 @@ struct LoadedFlight : FlightAssessment {
     FlightData data;      ///< selected from it
     FlightPhases phases;
     std::string exclusion = {};  ///< why the flight is excluded; empty if it is used
+    std::size_t recording = 1;   ///< its number in the file
 };
 
-/// A text or binary log with its .log, a log of another autopilot, or a CSV, in memory. `messages` (a messages.xml or
-/// another .log) defines the messages of a log whose .log is missing or damaged, `columns` (a column map) the tracks of
-/// a CSV. Throws InputError for a file that cannot be read.
-class FlightFile {
-  public:
-    explicit FlightFile(const std::filesystem::path& path, std::size_t max_bytes = telemetry::default_max_log_bytes,
-                        const std::optional<std::filesystem::path>& messages = std::nullopt,
-                        const std::optional<std::filesystem::path>& columns = std::nullopt);
-    FlightFile(const std::filesystem::path& path, const LoadOptions& options);
-    FlightFile(const FlightFile&) = delete;
-    FlightFile& operator=(const FlightFile&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-    bool is_series() const { return is_series_; }
-    /// Of a CSV that is no series.
-    const std::optional<ColumnMap>& column_map() const { return column_map_; }
-    std::string_view text() const { return text_; }
-    /// Format of another autopilot's log, which defines its own messages.
-    std::optional<telemetry::AutopilotFormat> autopilot() const { return autopilot_; }
-    /// Framing of a binary log; std::nullopt for text.
-    std::optional<telemetry::Framing> framing() const { return framing_; }
-    /// Text of the log's .log or of `messages`; std::nullopt without one.
-    const std::optional<std::string>& log_text() const { return log_text_; }
-    std::filesystem::path log_file() const { return log_file_; }
-    /// Error of the .log that `messages` replace; empty without one.
-    const std::string& log_error() const { return log_error_; }
-    /// The messages of a binary log. Throws InputError if nothing defines them.
-    telemetry::MessageDictionary definitions() const;
-
-  private:
-    std::filesystem::path path_;
-    bool is_series_ = false;
-    std::optional<ColumnMap> column_map_;
-    std::string text_;
-    std::optional<telemetry::AutopilotFormat> autopilot_;
-    std::optional<telemetry::Framing> framing_;
-    std::filesystem::path log_file_;
-    std::optional<std::string> log_text_;
-    std::string log_error_;
+/// The flights of a file, one for each recording that has one.
+struct LoadedFile {
+    std::vector<LoadedFlight> flights = {};
+    std::size_t recordings = 1;                      ///< of the file
+    std::map<std::size_t, std::string> unused = {};  ///< why a recording has no flight, by its number
 };
 
-/// Calls use(BinaryLog) for a binary file. Throws InputError if nothing defines its messages.
-template <typename Use>
-auto with_binary_log(const FlightFile& file, const Use& use) {
-    const auto messages = file.definitions();
-    return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
-}
+/// The number, from 1, of the requested recording, else of the first in which an aircraft flew, else of the first with
+/// one. Throws InputError for a recording that is missing, OtherAircraftError for one without the aircraft.
+std::size_t used_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
+                           const std::optional<std::size_t>& requested);
 
-/// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
-std::vector<std::string> census_of(const FlightFile& file);
+/// The candidates of the used recording.
+Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
 
-/// The log is valid, but has no data of the requested aircraft.
-class OtherAircraftError : public InputError {
-    using InputError::InputError;
-};
-
-/// The series of the named aircraft, else of all that sent telemetry, without checks. Throws InputError if the file has
-/// no telemetry, OtherAircraftError if the named aircraft sent nothing.
-std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
-
-/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several.
-FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
+/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several, or none.
+FlightSeries choose_aircraft(Candidates candidates);
 
 FlightAssessment assess_flight(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
@@ -128,8 +82,15 @@ std::string exclusion_reason(const FlightAssessment& assessment);
 /// missing sortie, and, if a flight is required, without altitude or flight.
 LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options);
 
-/// Reads, segments and checks a log (compressed or not) or series CSV.
-LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options);
+/// Reads, segments and checks a log (compressed or not) or CSV. Throws InputError if no recording has a flight (without
+/// flight_required: can be read).
+LoadedFile load_flights(const FlightFile& file, const LoadOptions& options);
+LoadedFile load_flights(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The first flight, with a sortie if there is one.
+LoadedFlight first_flight(LoadedFile file);
+
+/// The first flight of a file.
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Only the series. Throws InputError without measured power.

@@ -131,9 +131,10 @@ FlightPhases segment(const FlightData& data, const SegmentationOptions& options)
             phases.warnings.push_back(std::move(warning));
         auto sortie = make_sortie(candidate);
         if (sortie.phases.empty() || sortie.end_s() - sortie.start_s() < min_flight_s) {
-            phases.ground_events.push_back({grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
-                                            fmt::format("height of {:.0f} m for less than {:.0f} s: too short for a flight",
-                                                        heights.max_m, min_flight_s)});
+            phases.ground_events.push_back(
+                {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1),
+                 fmt::format("height of {:.0f} m for less than {:.0f} s: too short for a flight", heights.max_m,
+                             min_flight_s)});
             continue;
         }
         if (heights.are_unknown()) {
@@ -158,7 +159,7 @@ void require_sortie(const FlightData& data, const FlightPhases& phases, const st
     }
     const auto& altitude = data.altitude_m;
     const auto [low_m, high_m] = std::ranges::minmax(altitude.value);
-    const auto instead = !events.empty()                  ? fmt::format("it has: {}", fmt::join(events, "; "))
+    const auto instead = !events.empty()                 ? fmt::format("it has: {}", fmt::join(events, "; "))
                          : high_m - low_m < min_motion_m ? std::string("no motion")
                                                          : fmt::format("its altitude stays within {:.1f} m (motor: {})",
                                                                        high_m - low_m, phases.motor_source);

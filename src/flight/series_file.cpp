@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "base/toml_reader.h"
 #include "flight/select.h"
+#include "flight/telemetry_series.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
@@ -243,12 +244,17 @@ void write_rows(const std::vector<Track>& tracks, const TextSink& sink) {
 /// Reads the table row by row.
 class TableReader {
   public:
-    TableReader(FrontMatter matter, std::string file) : matter_(std::move(matter)), file_(std::move(file)) {}
+    TableReader(FrontMatter matter, std::string_view text, std::string file)
+        : matter_(std::move(matter)), text_(text), file_(std::move(file)) {}
 
     void read_row(const CsvRowView& row) {
         if (columns_.empty()) return bind(row);
+        if (std::ranges::equal(row.cells, columns_, {}, &CsvRowView::Cell::text))
+            return;  // of a file that was appended
         const double time_s = number(row, time_column_);
-        if (!(time_s > last_s_)) {
+        if (time_s < last_s_ && begins_recording(row.line)) {
+            end_recording();
+        } else if (!(time_s > last_s_)) {
             throw InputError({file_, row.line, row.cells[time_column_].column},
                              fmt::format("time_s = {} does not rise from {}", time_s, last_s_),
                              "sort the rows by time and remove repeated times");
@@ -262,22 +268,56 @@ class TableReader {
         }
     }
 
-    /// The series with the tracks that have a column. Throws InputError if the chosen column was changed.
-    FlightSeries take() {
-        std::size_t track = 0;
-        std::erase_if(matter_.series.tracks, [&](const Track&) { return !is_bound_[track++]; });
-        if (!chosen_.empty()) require_chosen();
-        return std::move(matter_.series);
+    /// The series of each recording, with the tracks that have a column.
+    std::vector<FlightSeries> take() {
+        end_recording();
+        for (auto& series : recordings_) {
+            std::size_t track = 0;
+            std::erase_if(series.tracks, [&](const Track&) { return !is_bound_[track++]; });
+        }
+        if (recordings_.size() == 1 && !chosen_.empty()) require_chosen(recordings_.front());
+        return std::move(recordings_);
     }
 
   private:
-    void require_chosen() const {
-        const auto power = select_tracks(matter_.series).power_w;
+    void require_chosen(const FlightSeries& series) const {
+        const auto power = select_tracks(series).power_w;
         if (power.time_s == chosen_.time_s && power.value == chosen_.value) return;
         throw InputError({file_},
                          fmt::format("{} is not the power that its candidates {}.2 ... give: was it changed?",
                                      matter_.chosen_column, matter_.chosen_column),
                          "remove the other columns of power, and the comment lines of the columns, to use your own");
+    }
+
+    /// Whether the file has another recording from this line on.
+    bool begins_recording(std::size_t line) {
+        if (starts_.empty()) starts_ = find_recordings();
+        return std::ranges::binary_search(starts_, line);
+    }
+
+    /// The first lines of the recordings.
+    std::vector<std::size_t> find_recordings() const {
+        telemetry::MessageTable rows{"row", {}, {{"number", {}, {}}}, {}};  // rows of equal times differ
+        for_each_csv_row(text_, file_, [&](const CsvRowView& row) {
+            const double time_s = number_or_nan(row.cells[time_column_].text);
+            if (std::isnan(time_s)) return;
+            rows.time_s.push_back(time_s);
+            rows.places.push_back(row.line);
+            rows.columns[0].values.push_back(static_cast<double>(row.line));
+        });
+        std::vector<std::size_t> starts;
+        for (const auto& part : recordings_of({file_, "", {}, {{"", {std::move(rows)}}}, {}, {}, 0}))
+            starts.push_back(part.senders.front().tables.front().places.front());
+        return starts;
+    }
+
+    void end_recording() {
+        std::vector<Track> next;
+        for (const auto& track : matter_.series.tracks)
+            next.push_back({track.name, track.source, track.device, track.since_s});
+        auto tracks = std::exchange(matter_.series.tracks, std::move(next));
+        recordings_.push_back(matter_.series);
+        recordings_.back().tracks = std::move(tracks);
     }
 
     double number(const CsvRowView& row, std::size_t column) const {
@@ -330,13 +370,46 @@ class TableReader {
 
     FrontMatter matter_;
     Track chosen_;  ///< the values of the chosen column
+    std::string_view text_;
     std::string file_;
+    std::vector<FlightSeries> recordings_;  ///< those that ended
+    std::vector<std::size_t> starts_;       ///< lines of all, once a time falls
     std::vector<std::string> columns_;
     std::vector<std::size_t> track_of_;  ///< of each column
     std::vector<bool> is_bound_;         ///< of each track
     std::size_t time_column_ = 0;
     double last_s_ = -std::numeric_limits<double>::infinity();
 };
+
+/// Where the front matter of a file begins that was appended; the text's size without one.
+std::size_t end_of_part(std::string_view text) {
+    constexpr std::string_view front = "\n# format = ";
+    for (auto at = text.find(front); at != std::string_view::npos; at = text.find(front, at + 1))
+        if (text[text.substr(0, at).rfind('\n') + 1] != '#') return at + 1;
+    return text.size();
+}
+
+std::vector<FlightSeries> parse_part(std::string_view text, const std::filesystem::path& file) {
+    TableReader reader(read_front_matter(text, file.string()), text, file.string());
+    for_each_csv_row(text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); });
+    auto recordings = reader.take();
+    for (auto& series : recordings) {
+        series.file = file.string();
+        if (series.flight.empty()) series.flight = telemetry::flight_name(file);
+    }
+    return recordings;
+}
+
+void require_samples(const FlightSeries& series) {
+    const auto samples = [&](std::string_view name) {
+        std::size_t most = 0;
+        for (const auto& track : series.tracks)
+            if (track.name == name) most = std::max(most, track.time_s.size());
+        return most;
+    };
+    const bool is_flight = samples("power_w") >= 2 || (samples("power_w") == 0 && samples("altitude_m") >= 2);
+    if (!is_flight) throw InputError({series.file}, "has fewer than two samples");
+}
 
 }  // namespace
 
@@ -360,21 +433,30 @@ void write_csv(const FlightSeries& series, const TextSink& sink) {
     write_rows(file.tracks, sink);
 }
 
+std::vector<FlightSeries> parse_series_recordings(std::string_view text, const std::filesystem::path& file) {
+    std::vector<FlightSeries> recordings;
+    std::size_t line = 0;
+    do {
+        const auto part = text.substr(0, end_of_part(text));
+        try {
+            std::ranges::move(parse_part(part, file), std::back_inserter(recordings));
+        } catch (const InputError& error) {
+            auto where = error.where();
+            if (where.line > 0) where.line += line;
+            throw InputError(where, error.what(), error.hint());
+        }
+        line += static_cast<std::size_t>(std::ranges::count(part, '\n'));
+        text.remove_prefix(part.size());
+    } while (!text.empty());
+    if (recordings.size() == 1) require_samples(recordings.front());
+    return recordings;
+}
+
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
-    TableReader reader(read_front_matter(text, file.string()), file.string());
-    for_each_csv_row(text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); });
-    auto series = reader.take();
-    series.file = file.string();
-    if (series.flight.empty()) series.flight = telemetry::flight_name(file);
-    const auto samples = [&](std::string_view name) {
-        std::size_t most = 0;
-        for (const auto& track : series.tracks)
-            if (track.name == name) most = std::max(most, track.time_s.size());
-        return most;
-    };
-    const bool is_flight = samples("power_w") >= 2 || (samples("power_w") == 0 && samples("altitude_m") >= 2);
-    if (!is_flight) throw InputError({series.file}, "has fewer than two samples");
-    return series;
+    auto recordings = parse_series_recordings(text, file);
+    if (recordings.size() > 1)
+        throw InputError({file.string()}, fmt::format("has {} recordings, expected one", recordings.size()));
+    return std::move(recordings.front());
 }
 
 FlightSeries read_series_csv(const std::filesystem::path& path) { return parse_series_csv(read_file(path), path); }

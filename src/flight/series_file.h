@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flightwatt::flight {
 
@@ -25,10 +26,13 @@ void write_csv(const FlightSeries& series, const TextSink& sink);
 
 /// Reads a series file, or a CSV without front matter (time_s and columns of track_names()). Throws InputError for a
 /// newer format, an unknown column, a value that is not a finite number, neither power_w nor altitude_m, fewer than two
-/// samples of power (without power: of altitude), and times that do not rise.
+/// samples of power (without power: of altitude), times that do not rise, and several recordings.
 FlightSeries read_series_csv(const std::filesystem::path& path);
 
 /// The same for a text; `file` is named in errors, and names the flight if the text does not.
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file);
+
+/// The series of each recording: files appended to each other, with their headers or not, or a clock that restarts.
+std::vector<FlightSeries> parse_series_recordings(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace flightwatt::flight

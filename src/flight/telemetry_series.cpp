@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "flight/sources/derived_tracks.h"
 #include "flight/sources/log_family.h"
+#include "telemetry/recordings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -98,7 +99,7 @@ void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
             restart = {restart_from_s, seen.rbegin()->first, time_s, table.message};
         const double known_s = shows(late_s);
         if (may_overlap && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
-            faults.overlaps.push_back({known_s, known_s, time_s, table.message});
+            faults.overlaps.push_back({known_s, seen.rbegin()->first, time_s, table.message});
         seen.emplace(time_s, SeenRow{row, known_s});
     }
 }
@@ -267,6 +268,11 @@ std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLo
     return telemetry::SkippedLines{
         fmt::format("the clock is set back by {:.1f} s at {:.1f} s, so that times occur twice", from_s - to_s, from_s),
         {{overlaps[few_late_rows - 1].visible_from_s, overlaps.size(), 0}}};
+}
+
+std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log) {
+    return telemetry::split_recordings(std::move(log),
+                                       [](const auto& rows) { return find_clock_restart(rows).has_value(); });
 }
 
 std::vector<telemetry::MessageRequest> flight_messages() {

@@ -20,6 +20,9 @@ std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sende
 /// Rows of a clock that was set back by seconds and runs over the same times again: fewer than make a restart.
 std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender);
 
+/// The recordings of a log (telemetry/recordings.h), each with its own clock; one that overlaps another stays with it.
+std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log);
+
 /// The messages and fields of a FlightSeries.
 std::vector<telemetry::MessageRequest> flight_messages();
 

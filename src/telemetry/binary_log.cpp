@@ -141,8 +141,10 @@ class FrameReader {
         for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
             fields_.push_back({field.type, p, elements});
         });
+        auto& table = table_of(log_, std::to_string(found.sender), plan, found.offset);
+        table.places.push_back(found.offset + 1);
         append_row(
-            table_of(log_, std::to_string(found.sender), plan, found.offset), plan, time_s,
+            table, plan, time_s,
             [&](const DecodePlan::Target& target) { return value_of(target); },
             [&](std::size_t field) {
                 skips_.add({SkipReason::not_a_number, index * max_fields + field}, time_s, found.offset + 1);

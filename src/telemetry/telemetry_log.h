@@ -36,6 +36,7 @@ struct MessageTable {
     std::string message;
     std::vector<double> time_s;
     std::vector<Column> columns;
+    std::vector<std::size_t> places = {};  ///< of the rows in a file: line or byte, from 1, rising; empty otherwise
 
     bool empty() const { return time_s.empty(); }
     /// The column of `field`; nullptr if the log's definition has none.

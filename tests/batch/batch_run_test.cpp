@@ -1,6 +1,7 @@
 #include "batch/batch_run.h"
 
 #include "base/error.h"
+#include "batch/batch_files.h"
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -319,6 +321,73 @@ TEST(Batch, KeepsFlightsOfOneNameApart) {
     batch(folder / "in", folder / "out", 2, true);
     EXPECT_FALSE(std::filesystem::exists(written / "flight.series.csv"));
     EXPECT_EQ(read_file(written / "flight_2.series.csv"), tuesday);
+}
+
+/// A log in `folder` of these texts, one behind the other.
+void put_recordings(const std::filesystem::path& folder, const std::string& name, const std::string& text) {
+    std::filesystem::remove(copy_sample(1, folder, name));
+    write_text(folder / (name + ".data"), text);
+}
+
+/// A minute on the ground.
+std::string ground() {
+    std::string text;
+    for (int t = 0; t < 100; ++t)
+        text += fmt::format("{0}.0 7 ENERGY 0 12. 0.1 1.{1} 0. 0.\n{0}.5 7 ESTIMATOR 15. 0.\n", t, t % 7);
+    return text;
+}
+
+TEST(BatchOfRecordings, HasAFlightOfEach) {
+    const auto folder = test::scratch_dir();
+    const auto in = folder / "in";
+    const auto out = folder / "out";
+    const auto first = read_file(test::sample(1));
+    const auto second = read_file(test::sample(2));
+    put_recordings(in, "log", first + second + ground());
+    copy_sample(3, in, "other");
+    const auto flights = batch(in, out);
+    ASSERT_EQ(flights.size(), 3U);
+    EXPECT_EQ(flights[1].record.flight, "log@2");
+    EXPECT_EQ(flights[1].selection.flights.at(0).flight, "log@2");
+    EXPECT_THAT(flights[0].record.warnings, testing::Contains(HasSubstr("recording 3 is not used: has no flight in")));
+    EXPECT_EQ(totals_of(flights).rejected_of_this_run, 0U);
+    EXPECT_THAT(done_anew(batch(in, out)), IsEmpty());
+    const auto stored = read_stored_flights(out);
+    ASSERT_EQ(stored.size(), 3U);
+    EXPECT_EQ(stored[1].series.flight, "log@2");
+    EXPECT_EQ(stored[1].series.tracks, flight::read_flight(test::sample(2)).tracks);
+    EXPECT_EQ(samples_of(batch(in, out), out).size(), 3U);
+    // A damaged file is made again, together with the others of its log.
+    write_text(out / "flights" / "log@2.series.csv", "damaged");
+    EXPECT_THAT(done_anew(batch(in, out)), ElementsAre("log", "log@2"));
+    put_recordings(in, "log", first);
+    EXPECT_THAT(done_anew(batch(in, out)), ElementsAre("log"));
+    EXPECT_FALSE(std::filesystem::exists(out / "flights" / "log@2.series.csv"));
+}
+
+TEST(BatchOfRecordings, DropsAllOfALog) {
+    const auto folder = test::scratch_dir();
+    put_recordings(folder / "in", "log", read_file(test::sample(1)) + read_file(test::sample(2)));
+    copy_sample(3, folder / "in", "other");
+    batch(folder / "in", folder / "out");
+    std::filesystem::remove(folder / "in" / "log.data");
+    EXPECT_EQ(batch(folder / "in", folder / "out").size(), 3U) << "kept, its log is missing";
+    EXPECT_EQ(batch(folder / "in", folder / "out", 2, true).size(), 1U);
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "out" / "flights"))
+        EXPECT_THAT(entry.path().filename().string(), testing::StartsWith("other."));
+}
+
+TEST(BatchOfRecordings, IsUsableWithoutAFlightInTheFirst) {
+    const auto folder = test::scratch_dir();
+    put_recordings(folder / "in", "log", ground() + read_file(test::sample(2)) + read_file(test::sample(3)));
+    const auto flights = batch(folder / "in", folder / "out");
+    ASSERT_EQ(flights.size(), 3U);
+    EXPECT_FALSE(flights[0].record.accepted);
+    EXPECT_THAT(flights[0].record.error, HasSubstr("recording 1: has no flight in"));
+    EXPECT_EQ(flights[2].record.flight, "log@3");
+    EXPECT_EQ(totals_of(flights).accepted, 2U);
+    EXPECT_EQ(totals_of(flights).rejected_of_this_run, 0U);
+    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());
 }
 
 TEST(Batch, ReadsTheNamedAircraft) {

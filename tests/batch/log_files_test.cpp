@@ -108,7 +108,7 @@ TEST(FindLogs, ShortensNamesThatFilesCannotHave) {
     EXPECT_EQ(shortened[0].size(), 200U + 1U + 16U);
     EXPECT_EQ(shortened[1], shortened[0] + "_2");
     EXPECT_NE(names_of_long(std::string(244, 'x') + "y")[0], shortened[0]);
-    EXPECT_EQ(names_of_long(std::string(239, 'x'))[0], std::string(239, 'x'));
+    EXPECT_EQ(names_of_long(std::string(236, 'x'))[0], std::string(236, 'x'));
     std::string umlauts = "x";
     for (int i = 0; i < 122; ++i) umlauts += "\xC3\xBC";
     EXPECT_EQ(names_of_long(umlauts)[0].substr(0, 200), umlauts.substr(0, 199) + "~");
@@ -186,6 +186,7 @@ TEST(FreeNames, AreTheNextOnesAlsoOfMany) {
     EXPECT_EQ(names.assign("x.data"), "x");
     EXPECT_EQ(names.assign("1/x.data"), "x_2");
     EXPECT_EQ(names.assign("2/x.data"), "x_4");
+    EXPECT_EQ(names.assign("x@2.data"), "x@2_") << "x@2 is a recording of x";
     for (int i = 5; i < 20'000; ++i) names.assign("3/x.data");
     EXPECT_EQ(names.assign("4/x.data"), "x_20000");
 }

@@ -57,7 +57,7 @@ std::vector<std::string> differing(const std::map<std::string, std::string>& one
     return names;
 }
 
-/// Logs of equal names, one that is a copy of another, and one that is none.
+/// Logs of equal names, one that is a copy of another, one that is none, and two with two recordings.
 Paths make_logs(const std::filesystem::path& folder) {
     Paths logs;
     for (int i = 1; i <= 4; ++i) logs.push_back(test::copy_sample(i, folder / "a"));
@@ -66,6 +66,10 @@ Paths make_logs(const std::filesystem::path& folder) {
     logs.push_back(test::copy_sample(1, folder / "c", "again"));
     logs.push_back(folder / "c" / "opterra_synthetic_03.data");
     test::write_text(logs.back(), "rubbish\n");
+    for (const auto* sub : {"a", "b"}) {
+        logs.push_back(test::copy_sample(5, folder / sub, "two"));
+        test::write_text(logs.back(), read_file(test::sample(5)) + read_file(test::sample(6)));
+    }
     return logs;
 }
 

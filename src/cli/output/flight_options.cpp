@@ -33,6 +33,12 @@ struct ReadFlight {
     bool is_sound = false;
 };
 
+/// Notes which of several recordings is used.
+void note_recording(const StageCall& call, const std::string& file, std::size_t used, std::size_t recordings) {
+    if (recordings < 2) return;
+    note(call, fmt::format("{}: recording {} of {} is used; --recording N selects another", file, used, recordings));
+}
+
 /// The numbers of those that count: each flight once, as its first recording with definitions, or else its first.
 std::vector<std::size_t> without_copies(const StageCall& call, const std::vector<ReadFlight>& flights) {
     std::unordered_map<std::uint64_t, std::size_t> used;  // by fingerprint
@@ -74,6 +80,8 @@ void add_flight_options(Options& options, flight::LoadOptions& load, const std::
     options.begin_group("Flights", false, needs);
     options.add("aircraft", load.aircraft_id, {.value = "ID"}, "the aircraft to read, where several flew");
     options.add("sortie", load.sortie, {.value = "N", .min = 1}, "this sortie of the log alone, counted from 1");
+    options.add("recording", load.recording, {.value = "N", .min = 1},
+                "this recording of a file alone, counted from 1, where its clock restarts");
     options.add("exclude", load.excluded, {.value = "FLIGHT"}, "do not use this flight");
     options.add("keep", load.keep, {.value = "FLIGHT"},
                 "use this flight though it would be excluded (power faults, not-fitted.txt)");
@@ -116,14 +124,34 @@ void warn_of(const StageCall& call, const std::string& file, const flight::Loade
     for (const auto& warning : flight.warnings) warn(call, fmt::format("{}: {}", file, warning));
 }
 
+std::string label_of(const std::string& file, const flight::LoadedFlight& flight) {
+    return flight.recording == 1 ? file : fmt::format("{}, recording {}", file, flight.recording);
+}
+
+void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded) {
+    for (const auto& [number, reason] : loaded.unused)
+        note(call, fmt::format("{}: recording {} is not used: {}", file, number, reason));
+}
+
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
-    auto loaded = flight::load_flight(std::filesystem::path(file), options);
+    auto all = flight::load_flights(std::filesystem::path(file), options);
+    const auto recordings = all.recordings;
+    auto loaded = flight::first_flight(std::move(all));
+    if (!options.recording) note_recording(call, file, loaded.recording, recordings);
     refuse_unknown_flights(options, {loaded.series.flight});
     if (options.excluded.contains(loaded.series.flight)) {
         throw UsageError(fmt::format("--exclude {}: no other flight is given", loaded.series.flight));
     }
-    warn_of(call, file, loaded);
+    warn_of(call, label_of(file, loaded), loaded);
     return loaded;
+}
+
+flight::Candidates read_recording(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
+    const flight::FlightFile log(file, options);
+    auto recordings = read_recordings(log, options.aircraft_id);
+    const auto used = used_recording(recordings, log, options.recording);
+    if (!options.recording) note_recording(call, file, used, recordings.size());
+    return std::move(recordings[used - 1]);
 }
 
 std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArguments& arguments,
@@ -138,10 +166,11 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArgu
     std::size_t done = 0;
     for (const auto& file : inputs) {
         if (inputs.size() > 1) reading.show(done++, inputs.size());
-        flight::LoadedFlight loaded;
+        flight::LoadedFile of_file;
         try {
-            loaded = flight::load_flight(std::filesystem::path(file), options);
+            of_file = flight::load_flights(std::filesystem::path(file), options);
             reading.hide();  // it may be warned of
+            note_unused(call, file, of_file);
         } catch (const flight::OtherAircraftError& error) {
             reading.hide();
             flights.push_back(flight_of_file(file));
@@ -156,16 +185,19 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArgu
             unusable = error;
             continue;
         }
-        const auto name = loaded.series.flight;
-        if (std::ranges::find(flights, name) != flights.end()) {
-            throw UsageError(fmt::format("flight '{}' is given twice", name));
+        for (auto& loaded : of_file.flights) {
+            const auto name = loaded.series.flight;
+            if (std::ranges::find(flights, name) != flights.end()) {
+                throw UsageError(fmt::format("flight '{}' is given twice", name));
+            }
+            flights.push_back(name);
+            const auto label = label_of(file, loaded);
+            warn_of(call, label, loaded);
+            known.push_back({{name, loaded.series.aircraft_id, loaded.series.aircraft_name},
+                             content_of(loaded.series),
+                             loaded.exclusion.empty()});
+            read(label, loaded);
         }
-        flights.push_back(name);
-        warn_of(call, file, loaded);
-        known.push_back({{name, loaded.series.aircraft_id, loaded.series.aircraft_name},
-                         content_of(loaded.series),
-                         loaded.exclusion.empty()});
-        read(file, loaded);
     }
     refuse_unknown_flights(options, flights);
     if (other && known.empty()) throw *other;

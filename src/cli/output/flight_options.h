@@ -21,7 +21,7 @@ struct FlightArguments {
     bool mix_aircraft = false;
 };
 
-/// The options of every stage that reads flights: --aircraft, --sortie, the thresholds of the segmentation,
+/// The options of every stage that reads flights: --aircraft, --sortie, --recording, the thresholds of the segmentation,
 /// --correct-idle-offset, --exclude, --keep and --messages. `needs` is an option that has to be given with them.
 void add_flight_options(Options& options, flight::LoadOptions& load, const std::vector<std::string>& needs = {});
 
@@ -40,8 +40,17 @@ void add_filter_options(Options& options, FlightFilter& filter);
 /// Prints the warnings of a flight that was read from `file`.
 void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight);
 
-/// load_flight, with its warnings.
+/// Notes the recordings of a file without a flight.
+void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded);
+
+/// The file, with the recording behind the first: for warnings.
+std::string label_of(const std::string& file, const flight::LoadedFlight& flight);
+
+/// The first flight of a file, with its warnings. Notes that there are other recordings.
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
+
+/// The candidates of the used recording of a file, with the same note.
+flight::Candidates read_recording(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
 
 /// The end of the description of every stage that makes one result of several flights.
 inline constexpr auto several_flights_text =

@@ -72,6 +72,7 @@ void RowCollector::append(const Row& row) {
     if (!row.table) return;
     auto& table = sender_.tables[*row.table];
     table.time_s.push_back(row.time_s);
+    table.places.push_back(row.offset + 1);
     for (std::size_t i = 0; i < table.columns.size(); ++i) table.columns[i].values.push_back(row.values[i]);
 }
 

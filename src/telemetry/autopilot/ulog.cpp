@@ -79,6 +79,10 @@ class UlogReader {
     void read() {
         std::size_t at = file_header_bytes;
         while (at < bytes_.size()) {
+            if (is_ulog(bytes_.substr(at))) {  // of a log that was appended
+                at += file_header_bytes;
+                continue;
+            }
             const auto part_end = end_of_part(at);
             const auto size = message_bytes(at, part_end);
             if (size > 0) {

@@ -57,8 +57,10 @@ class LogReader {
         if (std::isnan(time_s)) return skips_.add_without_time({SkipReason::no_time, index}, log_.lines);
         const auto count = split_fields(fields, words_);
         if (const auto reason = check_field_count(plan, count)) return skips_.add({*reason, index}, time_s, log_.lines);
+        auto& table = table_of(log_, sender, plan, log_.lines);
+        table.places.push_back(log_.lines);
         append_row(
-            table_of(log_, sender, plan, log_.lines), plan, time_s,
+            table, plan, time_s,
             [&](const DecodePlan::Target& target) { return field_value(target, words_[target.field]); },
             [&](std::size_t field) {
                 skips_.add({SkipReason::not_a_number, index * max_fields + field}, time_s, log_.lines);

@@ -1,0 +1,239 @@
+#include "flight/flight_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/number.h"
+#include "flight/flight_identity.h"
+#include "flight/series_file.h"
+#include "flight/sources/log_family.h"
+#include "flight/telemetry_series.h"
+#include "telemetry/recordings.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::flight {
+namespace {
+
+telemetry::TelemetryLog read_log(const FlightFile& file) {
+    std::optional<telemetry::LogConfiguration> configuration;
+    if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
+    if (file.framing()) {
+        return with_binary_log(file, [&](const telemetry::BinaryLog& log) {
+            return telemetry::read_binary_telemetry(log, std::move(configuration).value(), flight_messages());
+        });
+    }
+    return telemetry::read_telemetry(file.text(), file.path(), std::move(configuration), flight_messages());
+}
+
+/// A synthetic log without a .log is recognised by its first line, Paparazzi's simulator NPS by its own messages.
+void name_unflown(const FlightFile& file, std::vector<FlightSeries>& candidates) {
+    if (file.framing()) return;
+    const std::string_view text = file.text();
+    const auto has = [](std::string_view in, std::string_view what) { return in.find(what) != std::string_view::npos; };
+    const bool is_synthetic = has(text.substr(0, text.find('\n')), "INFO_MSG \"SYNTHETIC:");
+    const bool is_simulated = has(text, "NPS_");
+    for (auto& series : candidates) {
+        if (is_synthetic && series.aircraft_name.empty()) series.aircraft_name = unnamed_synthetic;
+        if (is_simulated && has(text, fmt::format(" {} NPS_", series.aircraft_id)))
+            series.aircraft_name += series.aircraft_name.empty() ? "NPS" : " NPS";
+    }
+}
+
+/// The series of all senders of telemetry, each with the skipped lines of the whole log.
+std::vector<FlightSeries> all_candidates(telemetry::TelemetryLog log) {
+    constexpr std::size_t max_candidates = 32;
+    constexpr std::size_t max_skips = 10'000'000;
+    auto senders = telemetry_senders(log);
+    if (senders.empty()) senders.emplace_back();
+    auto skipped = std::exchange(log.skipped, {});
+    std::size_t skips = 0;
+    for (const auto& kind : skipped) skips += kind.lines.size();
+    if (senders.size() > max_candidates || (senders.size() > 1 && skips * senders.size() > max_skips)) {
+        throw InputError({log.data_file.string()},
+                         fmt::format("{} senders may be aircraft: {}", senders.size(), short_list(senders)),
+                         "select one with --aircraft ID");
+    }
+    std::vector<FlightSeries> candidates;
+    for (const auto& sender : senders) {
+        candidates.push_back(flight_series(log, sender));
+        auto& of_sender = candidates.back().skipped;
+        of_sender.insert(of_sender.begin(), skipped.begin(), skipped.end());
+    }
+    return candidates;
+}
+
+/// Why a .log cannot be used; empty if it can.
+std::string error_of_definitions(const std::filesystem::path& log, bool for_frames) {
+    try {
+        const auto text = read_file(log, telemetry::max_log_configuration_bytes);
+        telemetry::parse_log_configuration(text, log);
+        if (for_frames) telemetry::parse_message_dictionary(text, log);
+    } catch (const InputError& error) {
+        return fmt::format("{}: {}", log.string(), error.what());
+    }
+    return "";
+}
+
+std::vector<FlightSeries> read_autopilot(const FlightFile& file) {
+    const auto format = file.autopilot().value();
+    using telemetry::AutopilotFormat;
+    const auto& family = format == AutopilotFormat::ulog     ? px4_family()
+                         : format == AutopilotFormat::sdlog2 ? sdlog2_family()
+                                                             : ardupilot_family();
+    auto read = read_autopilot_log(file.text(), format, file.path(), family_messages(family));
+    std::vector<FlightSeries> recordings;
+    for (auto& log : recordings_of(std::move(read.log)))
+        recordings.push_back(family_series({std::move(log), read.facts, read.messages}, family));
+    return recordings;
+}
+
+/// The recordings of a file of one aircraft; none if it is another one.
+std::vector<Candidates> parse_single(const FlightFile& file, const std::optional<std::string>& aircraft_id,
+                                     std::set<std::string>& ids) {
+    const auto& map = file.column_map();
+    std::vector<Candidates> recordings;
+    for (auto& series : map                ? parse_mapped_csv(file.text(), file.path(), *map)
+                        : file.is_series() ? parse_series_recordings(file.text(), file.path())
+                                           : read_autopilot(file)) {
+        ids.insert(series.aircraft_id);
+        auto& candidates = recordings.emplace_back();
+        if (!aircraft_id || series.aircraft_id.empty() || series.aircraft_id == *aircraft_id)
+            candidates.push_back(std::move(series));
+    }
+    return recordings;
+}
+
+std::vector<Candidates> parse_recordings(const FlightFile& file, const std::optional<std::string>& aircraft_id,
+                                         std::set<std::string>& ids) {
+    if (file.is_series() || file.autopilot()) return parse_single(file, aircraft_id, ids);
+    std::vector<Candidates> recordings;
+    for (auto& log : recordings_of(read_log(file))) {
+        std::set<std::string> own;
+        for (const auto& sender : log.senders) own.insert(sender.id);
+        auto& candidates = recordings.emplace_back();
+        if (!aircraft_id)
+            candidates = all_candidates(std::move(log));
+        else if (own.contains(*aircraft_id))
+            candidates.push_back(flight_series(log, *aircraft_id));
+        name_unflown(file, candidates);
+        ids.merge(own);
+    }
+    return recordings;
+}
+
+/// First and last time of the tracks; the former is the greater one without any.
+std::pair<double, double> span_s(const Candidates& candidates) {
+    constexpr double infinite_s = std::numeric_limits<double>::infinity();
+    std::pair<double, double> span{infinite_s, -infinite_s};
+    for (const auto& series : candidates) {
+        for (const auto& track : series.tracks) {
+            if (track.empty()) continue;
+            span.first = std::min(span.first, track.time_s.front());
+            span.second = std::max(span.second, track.time_s.back());
+        }
+    }
+    return span;
+}
+
+/// Names the recordings behind the first, and notes where they begin.
+void name_recordings(std::vector<Candidates>& recordings) {
+    double last_s = span_s(recordings.front()).second;
+    for (std::size_t i = 1; i < recordings.size(); ++i) {
+        const auto [begin_s, end_s] = span_s(recordings[i]);
+        for (auto& series : recordings[i]) {
+            series.flight = recording_name(series.flight, i + 1);
+            series.notes.push_back(
+                fmt::format("recording {} of its file: it begins at {:.1f} s, the one before ends at {:.1f} s", i + 1,
+                            begin_s, last_s));
+        }
+        last_s = end_s;
+    }
+}
+
+}  // namespace
+
+FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
+                       const std::optional<std::filesystem::path>& messages,
+                       const std::optional<std::filesystem::path>& columns)
+    : path_(path) {
+    std::error_code error;
+    is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
+    if (is_series_) {
+        text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
+        require_kind(text_, FileKind::log, path.string());
+        column_map_ = column_map_of(text_, path, columns);
+        return;
+    }
+    text_ = telemetry::read_data_file(path, max_bytes);
+    autopilot_ = telemetry::detect_autopilot_format(text_);
+    if (autopilot_) return;
+    require_kind(text_, FileKind::log, path.string());
+    framing_ = telemetry::detect_binary_framing(text_);
+    auto log = telemetry::find_log_file(path);
+    if (log && messages) log_error_ = error_of_definitions(*log, framing_.has_value());
+    if (!log || !log_error_.empty()) log = messages;
+    if (log) {
+        log_file_ = *log;
+        log_text_ = read_file(*log, telemetry::max_log_configuration_bytes);
+    }
+    if (!log_error_.empty()) log_error_ += fmt::format(": the definitions are those of {}", log_file_.string());
+}
+
+telemetry::MessageDictionary FlightFile::definitions() const {
+    if (!log_text_) {
+        throw InputError({path_.string()}, "is a binary log, and no .log defines its messages",
+                         "name the messages.xml or .log of the aircraft and build that flew, with --messages FILE");
+    }
+    return telemetry::parse_message_dictionary(*log_text_, log_file_);
+}
+
+std::vector<std::string> census_of(const FlightFile& file) {
+    std::vector<std::string> names;
+    if (file.is_series()) return names;
+    if (file.autopilot()) {
+        for (const auto& of : read_autopilot_log(file.text(), *file.autopilot(), file.path(), {}).messages)
+            names.push_back(fmt::format("{} {}", of.name, of.count));
+        return names;
+    }
+    const auto counts = file.framing()
+                            ? with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
+                            : telemetry::count_messages(file.text());
+    for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
+    return names;
+}
+
+std::string recording_name(const std::string& flight, std::size_t recording) {
+    return recording == 1 ? flight : fmt::format("{}@{}", flight, recording);
+}
+
+bool is_recording_name(const std::string& flight) {
+    const auto at = flight.rfind('@');
+    return at != std::string::npos && at > 0 && parse_unsigned(flight.substr(at + 1)).has_value();
+}
+
+std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+    std::set<std::string> ids;
+    auto recordings = parse_recordings(file, aircraft_id, ids);
+    if (std::ranges::all_of(recordings, &Candidates::empty)) {
+        throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
+                                 "the log has " + short_list({ids.begin(), ids.end()}));
+    }
+    if (recordings.size() > telemetry::max_recordings) {
+        throw InputError({file.path().string()}, fmt::format("has {} recordings", recordings.size()),
+                         fmt::format("a file may have {}: split it", telemetry::max_recordings));
+    }
+    for (auto& candidates : recordings)
+        for (auto& series : candidates)
+            if (!file.log_error().empty()) series.notes.push_back(file.log_error());
+    name_recordings(recordings);
+    return recordings;
+}
+
+}  // namespace flightwatt::flight

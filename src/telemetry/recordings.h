@@ -1,0 +1,23 @@
+#pragma once
+
+#include "telemetry/telemetry_log.h"
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace flightwatt::telemetry {
+
+/// The most recordings of one file; a clock that restarts more often is damaged.
+inline constexpr std::size_t max_recordings = 64;
+
+/// Whether rows of a sender show another recording (a clock that restarts), and not only lines out of order.
+using ShowsRestart = std::function<bool(const SenderLog& rows)>;
+
+/// The recordings of a log in the order of the file, each with its rows, skipped lines and assumptions. One begins at a
+/// row whose time falls by more than 2 s, if ten rows or more follow before the time is back where it was, it returns
+/// there without a jump, if at all, and the rows before the next fall show a restart. Rows without places are not split. Throws
+/// InputError for more than max_recordings.
+std::vector<TelemetryLog> split_recordings(TelemetryLog log, const ShowsRestart& shows_restart);
+
+}  // namespace flightwatt::telemetry
