@@ -274,9 +274,10 @@ std::string no_power_reason(const FlightSeries& series) {
 
 void require_power(const FlightSeries& series, const std::string& messages) {
     if (const auto& restart = series.clock_restart) {
+        const auto aircraft = series.aircraft_id.empty() ? "" : fmt::format("aircraft {}, ", series.aircraft_id);
         throw InputError({series.file},
-                         fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
-                                     restart->to_s, series.aircraft_id, restart->message),
+                         fmt::format("the clock runs back from {:.3f} to {:.3f} s ({}{})", restart->from_s,
+                                     restart->to_s, aircraft, restart->message),
                          "the file has several recordings: split it there");
     }
     if (!select_power(series).track.empty()) return;

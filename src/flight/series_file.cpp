@@ -1,7 +1,7 @@
 #include "flight/series_file.h"
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
+#include "base/csv_dialect.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -319,8 +319,13 @@ void write_csv(const FlightSeries& series, const TextSink& sink) {
 }
 
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file) {
-    TableReader reader(read_front_matter(text, file.string()), file.string());
-    for_each_csv_row(text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); });
+    auto matter = read_front_matter(text, file.string());
+    CsvDialect dialect;  // of what FlightWatt writes
+    if (!matter.present)
+        dialect = with_decimals(find_csv_header(text, file.string(), {"time_s"}).dialect, text, file.string());
+    TableReader reader(std::move(matter), file.string());
+    for_each_csv_row(
+        text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); }, dialect);
     auto series = reader.take();
     series.file = file.string();
     if (series.flight.empty()) series.flight = telemetry::flight_name(file);

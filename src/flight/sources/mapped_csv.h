@@ -1,0 +1,14 @@
+#pragma once
+
+#include "flight/column_map.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace flightwatt::flight {
+
+/// The series of a CSV by its map. Cells that are no numbers, and rows of another length than the header, are counted
+/// and left out. Throws InputError for a column that is missing, for fewer than two rows, and for negative power.
+FlightSeries parse_mapped_csv(std::string_view csv, const std::filesystem::path& file, const ColumnMap& map);
+
+}  // namespace flightwatt::flight
