@@ -5,10 +5,12 @@
 #include "base/number.h"
 
 #include <algorithm>
+#include <cctype>
 #include <forward_list>
 #include <stdexcept>
 
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/ranges.h>
 
 namespace flightwatt {
@@ -19,37 +21,56 @@ constexpr std::size_t max_columns = 1000;
 /// Of a table in memory, where a row costs as much as two cells: some 500 MB. Series are read row by row.
 constexpr std::size_t max_cells = 8'000'000;
 
+/// A decimal number with one comma: "-4,94", "1,5e3".
+bool has_decimal_comma(std::string_view cell) {
+    const auto comma = cell.find(',');
+    return comma != std::string_view::npos && cell.find_first_not_of("0123456789,+-eE") == std::string_view::npos &&
+           cell.find(',', comma + 1) == std::string_view::npos;
+}
+
 /// Splits lines into cells, in place of those of the last line.
 class LineSplitter {
   public:
-    LineSplitter(const std::string& file, CsvRowView& row) : file_(file), row_(row) {}
+    LineSplitter(const std::string& file, CsvRowView& row, const CsvDialect& dialect)
+        : file_(file), row_(row), separator_(dialect.separator), turns_commas_(dialect.has_decimal_comma) {}
 
     /// `text` ends before the line break.
     void split(std::string_view text) {
         row_.cells.clear();
-        unquoted_.clear();
+        owned_.clear();
         for (std::size_t p = 0;; ++p) {
             if (row_.cells.size() == max_columns) {
                 throw InputError({file_, row_.line}, fmt::format("has more than {} cells", max_columns),
                                  "is it a CSV table?");
             }
+            p = after_blanks(text, p);
             p = p < text.size() && text[p] == '"' ? add_quoted(text, p) : add_plain(text, p);
+            if (turns_commas_) turn_comma(row_.cells.back().text);
             if (p >= text.size()) return;
         }
     }
 
   private:
+    bool is_blank(char c) const { return (c == ' ' || c == '\t') && c != separator_; }
+
+    std::size_t after_blanks(std::string_view text, std::size_t p) const {
+        while (p < text.size() && is_blank(text[p])) ++p;
+        return p;
+    }
+
     /// Where the cell that begins at `p` ends.
     std::size_t add_plain(std::string_view text, std::size_t p) {
         const auto begin = p;
-        while (p < text.size() && text[p] != ',') ++p;  // cells are short, and many are empty
-        row_.cells.push_back({text.substr(begin, p - begin), begin + 1});
+        while (p < text.size() && text[p] != separator_) ++p;  // cells are short, and many are empty
+        auto end = p;
+        while (end > begin && is_blank(text[end - 1])) --end;
+        row_.cells.push_back({text.substr(begin, end - begin), begin + 1});
         return p;
     }
 
     std::size_t add_quoted(std::string_view text, std::size_t p) {
         const auto column = p + 1;
-        auto& cell = unquoted_.emplace_front();
+        auto& cell = owned_.emplace_front();
         while (true) {
             const auto quote = text.find('"', p + 1);
             if (quote == std::string_view::npos)
@@ -59,46 +80,74 @@ class LineSplitter {
             if (p >= text.size() || text[p] != '"') break;
             cell += '"';
         }
-        if (p < text.size() && text[p] != ',') {
+        p = after_blanks(text, p);
+        if (p < text.size() && text[p] != separator_) {
             throw InputError({file_, row_.line, p + 1}, "text follows a closing quote",
-                             "put a comma between the cells");
+                             fmt::format("put a '{}' between the cells", separator_));
         }
         row_.cells.push_back({cell, column});
         return p;
     }
 
+    void turn_comma(std::string_view& cell) {
+        if (!has_decimal_comma(cell)) return;
+        auto& turned = owned_.emplace_front(cell);
+        turned[turned.find(',')] = '.';
+        cell = turned;
+    }
+
     const std::string& file_;
     CsvRowView& row_;
-    std::forward_list<std::string> unquoted_;  ///< of the line
+    char separator_;
+    bool turns_commas_;
+    std::forward_list<std::string> owned_;  ///< texts of cells that are not in the line as they are read
 };
+
+[[noreturn]] void refuse_length(const std::string& file, const CsvRowView& row, std::size_t width, char separator) {
+    const bool are_decimals = separator == ',' && row.cells.size() > width;
+    throw InputError({file, row.line},
+                     fmt::format("{} cells, expected {} as in the first line", row.cells.size(), width),
+                     are_decimals ? "if commas are its decimals too, separate the cells by semicolons" : "");
+}
 
 }  // namespace
 
-void for_each_csv_row(std::string_view text, const std::string& file,
-                      const std::function<void(const CsvRowView&)>& on_row) {
+void for_each_csv_row(std::string_view text, const std::string& file, const CsvRowReader& on_row,
+                      const CsvDialect& dialect, const CsvRowReader& on_ragged) {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets begin with it
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     std::size_t line_number = 0;
     std::size_t width = 0;
     CsvRowView row{0, {}};
-    LineSplitter splitter(file, row);
+    LineSplitter splitter(file, row, dialect);
     while (!text.empty()) {
-        const auto end = std::min(text.find('\n'), text.size());
+        const auto end = std::min(text.find(dialect.line_end), text.size());
         auto line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-        ++line_number;
+        if (++line_number <= dialect.lines_before) continue;
         if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-        if (line.empty() || line.front() == '#') continue;
+        if (line.find_first_not_of(" \t") == std::string_view::npos || line.front() == '#') continue;
         row.line = line_number;
         splitter.split(line);
         if (width == 0) width = row.cells.size();
-        if (row.cells.size() != width) {
-            throw InputError({file, line_number},
-                             fmt::format("{} cells, expected {} as in the first line", row.cells.size(), width));
-        }
-        on_row(row);
+        while (row.cells.size() > width && row.cells.back().text.empty()) row.cells.pop_back();
+        if (row.cells.size() == width)
+            on_row(row);
+        else if (on_ragged)
+            on_ragged(row);
+        else
+            refuse_length(file, row, width, dialect.separator);
     }
     if (width == 0) throw InputError({file}, "is empty, expected a CSV table");
+}
+
+std::vector<std::string> csv_cells(std::string_view line, char separator) {
+    CsvRowView row{0, {}};
+    const std::string file;
+    LineSplitter(file, row, {separator}).split(line);
+    std::vector<std::string> cells;
+    for (const auto& cell : row.cells) cells.emplace_back(cell.text);
+    return cells;
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {
@@ -137,6 +186,23 @@ std::size_t column_index(const CsvTable& table, std::string_view name) {
     return static_cast<std::size_t>(found - table.columns.begin());
 }
 
+std::vector<CsvColumn> find_columns(const std::vector<std::string>& columns, const std::string& searched) {
+    const auto name = boost::trim_copy(searched);
+    std::vector<CsvColumn> whole;
+    std::vector<CsvColumn> with_unit;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const std::string_view column = columns[i];
+        if (column == name) whole.push_back({i});
+        const auto bracket = column.ends_with(')')   ? column.rfind('(')
+                             : column.ends_with(']') ? column.rfind('[')
+                                                     : std::string_view::npos;
+        if (bracket == std::string_view::npos || boost::trim_right_copy(columns[i].substr(0, bracket)) != name)
+            continue;
+        with_unit.push_back({i, columns[i].substr(bracket + 1, column.size() - bracket - 2)});
+    }
+    return whole.empty() ? with_unit : whole;
+}
+
 double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t column) {
     const auto& cell = row.cells.at(column);
     if (const auto value = parse_number(cell.text)) return *value;
@@ -146,7 +212,9 @@ double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t 
 }
 
 std::string csv_cell(std::string_view text) {
-    if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+    const bool has_edges = !text.empty() && (std::isspace(static_cast<unsigned char>(text.front())) != 0 ||
+                                             std::isspace(static_cast<unsigned char>(text.back())) != 0);
+    if (!has_edges && text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
     return fmt::format("\"{}\"", boost::replace_all_copy(std::string(text), "\"", "\"\""));
 }
 

@@ -14,8 +14,17 @@
 
 namespace flightwatt {
 
+/// How a table separates its cells and writes its numbers. Tables of other programs: see csv_dialect.h.
+struct CsvDialect {
+    char separator = ',';
+    bool has_decimal_comma = false;  ///< its numbers are read with a point
+    char line_end = '\n';            ///< '\r' where it is the only one; "\r\n" is read as '\n'
+    std::size_t lines_before = 0;    ///< the header: they are passed over
+    bool operator==(const CsvDialect&) const = default;
+};
+
 /// A CSV file as text cells, with the line that each row stood on. Lines that begin with '#' and blank lines
-/// are passed over; cells may be quoted with '"' (RFC 4180).
+/// are passed over; blanks around cells are no part of them, and cells may be quoted with '"' (RFC 4180).
 struct CsvTable {
     struct Cell {
         std::string text;
@@ -46,18 +55,34 @@ struct CsvRowView {
     std::vector<Cell> cells;
 };
 
+using CsvRowReader = std::function<void(const CsvRowView&)>;
+
 /// The rows of a CSV text one at a time, the header's first, for files too large to hold as cells. Throws as
-/// parse_csv does.
-void for_each_csv_row(std::string_view text, const std::string& file,
-                      const std::function<void(const CsvRowView&)>& on_row);
+/// parse_csv does; a row of another length than the header is passed to `on_ragged` instead, if there is one. Empty
+/// cells behind the last column are no part of a row.
+void for_each_csv_row(std::string_view text, const std::string& file, const CsvRowReader& on_row,
+                      const CsvDialect& dialect = {}, const CsvRowReader& on_ragged = {});
+
+/// The cells of one line. Throws InputError as parse_csv does.
+std::vector<std::string> csv_cells(std::string_view line, char separator);
 
 /// The index of a named column. Throws InputError that lists the columns there are.
 std::size_t column_index(const CsvTable& table, std::string_view name);
 
+/// A column, and the unit that its name states.
+struct CsvColumn {
+    std::size_t index = 0;
+    std::string unit = {};  ///< empty if `name` is the whole name, or there is none
+};
+
+/// The column of that name, else the columns that have a unit in brackets behind it: "Alt" finds "Alt(m)", "Alt [ft]".
+/// Blanks around the name do not count.
+std::vector<CsvColumn> find_columns(const std::vector<std::string>& columns, const std::string& name);
+
 /// The number in a cell. Throws InputError "power_w is not a finite number: 'nan'" with its place.
 double cell_number(const CsvTable& table, const CsvTable::Row& row, std::size_t column);
 
-/// `text` as one CSV cell: quoted if it holds a comma, a quote or a line break.
+/// `text` as one CSV cell: quoted if it holds a comma, a quote or a line break, or blanks around it.
 std::string csv_cell(std::string_view text);
 
 /// The cells as a line, with its end.

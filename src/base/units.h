@@ -15,6 +15,10 @@ inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
 inline constexpr double degree_per_rad = 180.0 / std::numbers::pi;
 inline constexpr double standard_gravity_m_per_s2 = 9.80665;
 inline constexpr double metre_per_degree = 111195.0;  ///< of a great circle on a sphere as large as the earth
+inline constexpr double metre_per_foot = 0.3048;
+inline constexpr double metre_per_mile = 1609.344;
+inline constexpr double metre_per_nautical_mile = 1852.0;
+inline constexpr double metre_per_kilometre = 1000.0;
 /// The paper's Table I counts time in units of which every phase lasts 28, whatever its seconds.
 inline constexpr double table_one_time_per_phase = 28.0;
 
@@ -63,8 +67,8 @@ struct Unit {
     double factor;  ///< value in the base unit = factor * raw value
 };
 
-/// Reads a unit as Paparazzi message definitions write it: "V", "1e-1V", "decivolt", "mAh", "cm/s", "pprz",
-/// "1e7deg" (ten millionths of a degree).
+/// Reads a unit as Paparazzi's message definitions and the logs of other programs write it: "V", "1e-1V", "decivolt",
+/// "mAh", "cm/s", "pprz", "ft", "km/h", "1e7deg" (ten millionths of a degree).
 /// std::nullopt for other quantities.
 std::optional<Unit> parse_unit(std::string_view text);
 

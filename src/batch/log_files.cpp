@@ -29,10 +29,12 @@ bool is_result(const std::filesystem::path& csv) {
 }
 
 /// .data, of SD cards .LOG and .tlm, and of other autopilots .bin, .ulg and .px4log, compressed or not. An X.LOG that is XML
-/// defines the messages of X.tlm; a .log counts if it is a DataFlash log as text, a .csv if it is a flight.
+/// defines the messages of X.tlm; a .log counts if it is a DataFlash log as text. Of the tables of ulog2csv one counts,
+/// of other tables those that are flights.
 bool is_log_name(const std::filesystem::path& path, const std::optional<std::filesystem::path>& columns) {
     auto name = path.filename().string();
-    if (name.ends_with(".csv")) return !is_result(path) && flight::is_flight_csv(path, columns);
+    if (const auto log = columns ? std::nullopt : telemetry::ulog_tables_of(path)) return log->filename() == name;
+    if (flight::is_flight_csv(path, columns)) return !is_result(path);
     for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst"}) {
         if (!name.ends_with(packed)) continue;
         name.resize(name.size() - packed.size());
@@ -182,7 +184,8 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
             throw InputError({path.empty() ? "''" : path}, cause,
                              "expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
         }
-        logs.push_back({path});
+        const auto tables = columns ? std::nullopt : telemetry::ulog_tables_of(path);
+        logs.push_back({tables ? tables->string() : path});
     };
     for (const auto& input : inputs) add(input, true);
     for (const auto& path : listed) add(path, false);

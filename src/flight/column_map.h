@@ -1,7 +1,9 @@
 #pragma once
 
+#include "base/units.h"
 #include "flight/flight_series.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,43 +14,49 @@ namespace flightwatt::flight {
 
 /// A track from columns of a CSV.
 struct MappedTrack {
-    enum class Combine { column, product, norm };
+    enum class Combine { first, product, norm };
 
     std::string name;
-    Combine combine = Combine::column;
-    std::vector<std::string> columns;
-    double factor = 1.0;  ///< from the columns' unit to that of the track
+    Combine combine = Combine::first;
+    std::vector<std::string> columns;  ///< without any, `factor` is the value
+    double unit_factor = 1.0;          ///< where the names of the columns state no unit
+    double factor = 1.0;
 };
 
 /// Which columns of a CSV are the tracks of a flight (docs/formats.md, "Column map").
 struct ColumnMap {
     std::string text;                 ///< of its file
+    bool is_shipped = false;          ///< tracks whose columns a file lacks are left out
     std::vector<std::string> header;  ///< a CSV with all of these is recognised; empty: none is
     std::string aircraft_id;
     std::string aircraft_name;
     std::string firmware;
     CurrentOrigin current_origin = CurrentOrigin::unknown;
+    std::optional<std::size_t> skip_lines;  ///< before the header; absent: it is found by its names
     std::string time_column;
-    double ticks_per_s = 1.0;
+    std::string date_column;  ///< empty: none
+    double tick_s = 1.0;      ///< where the name of the column states no unit
     bool is_unix_time = false;
     std::vector<MappedTrack> tracks;
 };
 
-/// Throws InputError for an unknown key, track or unit, and for a map without power_w and altitude_m.
+/// Throws InputError for an unknown key, track or unit, a track named twice, and for a map with neither altitude_m nor
+/// power_w (which may be voltage_v and current_a).
 ColumnMap parse_column_map(const std::string& text, const std::filesystem::path& file);
 ColumnMap read_column_map(const std::filesystem::path& file);
+
+/// The names by which the header of a map's files is found.
+std::vector<std::string> header_names(const ColumnMap& map);
+
+/// The quantity of a track by the suffix of its name; std::nullopt for states.
+std::optional<units::Quantity> quantity_of(std::string_view track);
 
 /// The map of a CSV: that of the file `columns`, else one that comes with FlightWatt and whose header it has.
 /// std::nullopt for a series. Throws InputError, naming `file`, for a CSV that is neither.
 std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesystem::path& file,
                                        const std::optional<std::filesystem::path>& columns);
 
-/// Whether a CSV file is a flight, by its header: a series, or one with a map.
+/// Whether a .csv, .tsv, .txt or .log is a table of a flight, by its header: a series, or one with a map.
 bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::filesystem::path>& columns);
-
-/// The series of a CSV by its map, one for each recording. A cell that is no number is counted and left out. Throws
-/// InputError for a column that is missing, and for fewer than two rows.
-std::vector<FlightSeries> parse_mapped_csv(std::string_view csv, const std::filesystem::path& file,
-                                           const ColumnMap& map);
 
 }  // namespace flightwatt::flight

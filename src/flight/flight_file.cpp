@@ -7,7 +7,9 @@
 #include "flight/flight_identity.h"
 #include "flight/series_file.h"
 #include "flight/sources/log_family.h"
+#include "flight/sources/mapped_csv.h"
 #include "flight/telemetry_series.h"
+#include "telemetry/autopilot/ulog_tables.h"
 #include "telemetry/recordings.h"
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <system_error>
 #include <utility>
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::flight {
@@ -84,7 +87,8 @@ std::string error_of_definitions(const std::filesystem::path& log, bool for_fram
 std::vector<FlightSeries> read_autopilot(const FlightFile& file) {
     const auto format = file.autopilot().value();
     using telemetry::AutopilotFormat;
-    const auto& family = format == AutopilotFormat::ulog     ? px4_family()
+    const bool is_px4 = format == AutopilotFormat::ulog || format == AutopilotFormat::ulog_tables;
+    const auto& family = is_px4                              ? px4_family()
                          : format == AutopilotFormat::sdlog2 ? sdlog2_family()
                                                              : ardupilot_family();
     auto read = read_autopilot_log(file.text(), format, file.path(), family_messages(family));
@@ -163,8 +167,16 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
                        const std::optional<std::filesystem::path>& messages,
                        const std::optional<std::filesystem::path>& columns)
     : path_(path) {
+    const auto tables = columns ? std::nullopt : telemetry::ulog_tables_of(path);
     std::error_code error;
-    is_series_ = path.extension() == ".csv" && std::filesystem::is_regular_file(path, error);
+    const bool is_csv = boost::iequals(path.extension().string(), ".csv") || is_flight_csv(path, columns);
+    is_series_ = !tables && is_csv && std::filesystem::is_regular_file(path, error);
+    if (tables) {
+        path_ = *tables;
+        text_ = telemetry::join_ulog_tables(path_, family_messages(px4_family()), max_bytes);
+        autopilot_ = telemetry::detect_autopilot_format(text_);
+        return;
+    }
     if (is_series_) {
         text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
         require_kind(text_, FileKind::log, path.string());

@@ -1,7 +1,7 @@
 #include "flight/series_file.h"
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
+#include "base/csv_dialect.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -244,8 +244,8 @@ void write_rows(const std::vector<Track>& tracks, const TextSink& sink) {
 /// Reads the table row by row.
 class TableReader {
   public:
-    TableReader(FrontMatter matter, std::string_view text, std::string file)
-        : matter_(std::move(matter)), text_(text), file_(std::move(file)) {}
+    TableReader(FrontMatter matter, std::string_view text, CsvDialect dialect, std::string file)
+        : matter_(std::move(matter)), text_(text), dialect_(dialect), file_(std::move(file)) {}
 
     void read_row(const CsvRowView& row) {
         if (columns_.empty()) return bind(row);
@@ -298,13 +298,16 @@ class TableReader {
     /// The first lines of the recordings.
     std::vector<std::size_t> find_recordings() const {
         telemetry::MessageTable rows{"row", {}, {{"number", {}, {}}}, {}};  // rows of equal times differ
-        for_each_csv_row(text_, file_, [&](const CsvRowView& row) {
-            const double time_s = number_or_nan(row.cells[time_column_].text);
-            if (std::isnan(time_s)) return;
-            rows.time_s.push_back(time_s);
-            rows.places.push_back(row.line);
-            rows.columns[0].values.push_back(static_cast<double>(row.line));
-        });
+        for_each_csv_row(
+            text_, file_,
+            [&](const CsvRowView& row) {
+                const double time_s = number_or_nan(row.cells[time_column_].text);
+                if (std::isnan(time_s)) return;
+                rows.time_s.push_back(time_s);
+                rows.places.push_back(row.line);
+                rows.columns[0].values.push_back(static_cast<double>(row.line));
+            },
+            dialect_);
         std::vector<std::size_t> starts;
         for (const auto& part : recordings_of({file_, "", {}, {{"", {std::move(rows)}}}, {}, {}, 0}))
             starts.push_back(part.senders.front().tables.front().places.front());
@@ -371,6 +374,7 @@ class TableReader {
     FrontMatter matter_;
     Track chosen_;  ///< the values of the chosen column
     std::string_view text_;
+    CsvDialect dialect_;
     std::string file_;
     std::vector<FlightSeries> recordings_;  ///< those that ended
     std::vector<std::size_t> starts_;       ///< lines of all, once a time falls
@@ -390,8 +394,13 @@ std::size_t end_of_part(std::string_view text) {
 }
 
 std::vector<FlightSeries> parse_part(std::string_view text, const std::filesystem::path& file) {
-    TableReader reader(read_front_matter(text, file.string()), text, file.string());
-    for_each_csv_row(text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); });
+    auto matter = read_front_matter(text, file.string());
+    CsvDialect dialect;  // of what FlightWatt writes
+    if (!matter.present)
+        dialect = with_decimals(find_csv_header(text, file.string(), {"time_s"}).dialect, text, file.string());
+    TableReader reader(std::move(matter), text, dialect, file.string());
+    for_each_csv_row(
+        text, file.string(), [&](const CsvRowView& row) { reader.read_row(row); }, dialect);
     auto recordings = reader.take();
     for (auto& series : recordings) {
         series.file = file.string();

@@ -2,8 +2,10 @@
 
 #include "telemetry/telemetry_log.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +17,7 @@ enum class AutopilotFormat {
     dataflash_text,  ///< the same as lines
     sdlog2,          ///< PX4 until 2017, of the same form as DataFlash
     ulog,            ///< PX4
+    ulog_tables,     ///< the same as a table for each topic, by ulog2csv
 };
 
 std::string_view to_string(AutopilotFormat format);
@@ -27,5 +30,14 @@ std::optional<AutopilotFormat> detect_autopilot_format(std::string_view bytes);
 /// bytes between are counted as skipped. Throws InputError for a newer ULog and for damage of more than 64 MB.
 AutopilotLog read_autopilot_log(std::string_view bytes, AutopilotFormat format, const std::filesystem::path& file,
                                 const std::vector<MessageRequest>& wanted);
+
+/// The file that represents the log of a table by ulog2csv: of NAME_TOPIC_N.csv, that of the battery in the same folder,
+/// else of an altitude. std::nullopt for other files.
+std::optional<std::filesystem::path> ulog_tables_of(const std::filesystem::path& file);
+
+/// The tables of the requested topics of the log that a file represents, as one text for read_autopilot_log(). Throws
+/// InputError for a table that cannot be read, and for more than `max_bytes`.
+std::string join_ulog_tables(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted,
+                             std::size_t max_bytes);
 
 }  // namespace flightwatt::telemetry

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "telemetry/autopilot/ulog_table_name.h"
 #include "telemetry/data_file.h"
 #include "telemetry/message_definition.h"
 
@@ -145,8 +146,9 @@ std::string flight_name(const std::filesystem::path& data_file) {
         if (found != endings.end()) name.resize(name.size() - found->size());
     };
     strip_first({".gz", ".bz2", ".xz", ".zst"});
-    strip_first({".series.csv", ".data", ".csv", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN", ".ulg", ".px4log"});
-    return name;
+    strip_first({".series.csv", ".data", ".csv", ".CSV", ".tsv", ".txt", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN",
+                 ".ulg"});
+    return without_topic(std::move(name));
 }
 
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file) {

@@ -16,6 +16,18 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+void expect_error(const std::string& text, std::size_t line, std::size_t column, const std::string& message) {
+    try {
+        const auto table = parse_csv(text, "a.csv");
+        for (const auto& row : table.rows) cell_number(table, row, column_index(table, "power_w"));
+        FAIL() << "accepted: " << text;
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.where().line, line) << text;
+        EXPECT_EQ(error.where().column, column) << text;
+        EXPECT_THAT(error.what(), HasSubstr(message)) << text;
+    }
+}
+
 TEST(Csv, ReadsCellsWithTheirPlaces) {
     const auto table = parse_csv("# a comment\r\ntime_s,power_w\r\n\r\n1,2.5\r\n3,\"4\"", "a.csv");
     EXPECT_THAT(table.columns, ElementsAre("time_s", "power_w"));
@@ -49,16 +61,42 @@ TEST(Csv, RowsAreReadWhereTheyStand) {
     EXPECT_THAT(columns, ElementsAre(1U, 5U, 18U, 19U));
 }
 
-void expect_error(const std::string& text, std::size_t line, std::size_t column, const std::string& message) {
-    try {
-        const auto table = parse_csv(text, "a.csv");
-        for (const auto& row : table.rows) cell_number(table, row, column_index(table, "power_w"));
-        FAIL() << "accepted: " << text;
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.where().line, line) << text;
-        EXPECT_EQ(error.where().column, column) << text;
-        EXPECT_THAT(error.what(), HasSubstr(message)) << text;
-    }
+TEST(Csv, TrimsCellsAndNames) {
+    const auto table = parse_csv(" time_s ,\tpower_w, note\n 1 , 2.5,\"a\" \n   \n3,4, \" b\"\n", "a.csv");
+    EXPECT_THAT(table.columns, ElementsAre("time_s", "power_w", "note"));
+    ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_EQ(cell_number(table, table.rows[0], 1), 2.5);
+    EXPECT_EQ(table.rows[0].cells[1].column, 5U) << "where the cell begins";
+    EXPECT_EQ(table.rows[0].cells[2].text, "a");
+    EXPECT_EQ(table.rows[1].cells[2].text, " b") << "quotes keep blanks";
+    EXPECT_EQ(csv_cell(" b"), "\" b\"");
+}
+
+TEST(Csv, EmptyCellsBehindTheLastColumnDoNotCount) {
+    EXPECT_EQ(parse_csv("a,b\n1,2,\n3,4,,\n", "a.csv").rows.size(), 2U);
+    expect_error("time_s,power_w\n1,2,3\n", 2, 0, "3 cells, expected 2");
+}
+
+TEST(Csv, PassesRaggedRowsOn) {
+    std::vector<std::size_t> ragged;
+    for_each_csv_row(
+        "a,b\n1\n1,2\n1,2,3\n", "a.csv", [](const CsvRowView& row) { EXPECT_EQ(row.cells.size(), 2U); }, {},
+        [&](const CsvRowView& row) { ragged.push_back(row.line); });
+    EXPECT_THAT(ragged, ElementsAre(2U, 4U));
+}
+
+TEST(Csv, FindsColumnsWithTheirUnits) {
+    const std::vector<std::string> columns{"Time", "Alt(m)", "speed (km/h)", "OSD.height [ft]", "h(m)", "h(ft)", "x()"};
+    const auto unit_of = [&](const char* name) {
+        const auto found = find_columns(columns, name);
+        return found.empty() ? "none" : found.front().unit;
+    };
+    EXPECT_EQ(unit_of("Alt"), "m");
+    EXPECT_EQ(unit_of(" speed"), "km/h");
+    EXPECT_EQ(unit_of("OSD.height"), "ft");
+    EXPECT_EQ(unit_of("Alt(m)"), "") << "the whole name";
+    EXPECT_EQ(unit_of("alt"), "none");
+    EXPECT_EQ(find_columns(columns, "h").size(), 2U);
 }
 
 TEST(Csv, RefusesBadTablesWithTheirPlace) {

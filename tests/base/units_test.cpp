@@ -25,6 +25,17 @@ TEST(Units, ReadsTheUnitsOfPaparazzi) {
     expect_unit("pprz", Quantity::percent, 100.0 / 9600.0);
 }
 
+TEST(Units, ReadsTheUnitsOfTables) {
+    expect_unit("ft", Quantity::metre, 0.3048);
+    expect_unit("feet", Quantity::metre, 0.3048);
+    expect_unit("mph", Quantity::metre_per_second, 0.44704);
+    expect_unit("km/h", Quantity::metre_per_second, 1.0 / 3.6);
+    expect_unit("kt", Quantity::metre_per_second, 1852.0 / 3600.0);
+    expect_unit("mW", Quantity::watt, 1e-3);
+    expect_unit("min", Quantity::second, 60.0);
+    expect_unit("°", Quantity::degree, 1.0);
+}
+
 TEST(Units, KnowsNoOthers) {
     for (const auto* text : {"", "rpm", "byte_mask", "bool", "furlong", "1e-1"}) {
         EXPECT_FALSE(parse_unit(text).has_value()) << text;

@@ -47,6 +47,19 @@ TEST(FindLogs, TakesFilesOfAnyName) {
     EXPECT_THAT(names(find_logs({file.string()})), ElementsAre("flight"));
 }
 
+TEST(FindLogs, TakesTablesOfOneULogAsOneLog) {
+    const auto folder = test::scratch_dir();
+    for (const auto* name : {"a_1_battery_status_1", "a_1_vehicle_status_0", "a_1_cpuload_0", "b_vehicle_air_data_0",
+                             "c_vehicle_air_data_0", "d_cpuload_0"})
+        write_text(folder / (std::string(name) + ".csv"), "timestamp,x\n1,2\n");
+    touch(folder / "c.ulg");
+    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("a_1", "b", "c"));
+    const auto any =
+        find_logs({(folder / "a_1_cpuload_0.csv").string(), (folder / "a_1_vehicle_status_0.csv").string()});
+    ASSERT_EQ(any.size(), 1U);
+    EXPECT_EQ(any[0].path, folder / "a_1_battery_status_1.csv");
+}
+
 TEST(FindLogs, TakesLogsOfOtherAutopilotsAndFlightsAsCsv) {
     const auto folder = test::scratch_dir();
     for (const auto* name : {"a.bin", "b.BIN", "c.ulg", "c.ulg.gz", "d.log", "d.txt", "made.data"})

@@ -1,10 +1,15 @@
 #include "flight/column_map.h"
 
 #include "flight/load_flight.h"
+#include "flight/sources/mapped_csv.h"
 #include "helpers/rejected.h"
 #include "helpers/selected_tracks.h"
+#include "helpers/table_flights.h"
 #include "helpers/test_paths.h"
 
+#include <filesystem>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,6 +84,12 @@ TEST(ColumnMap, MistakesAreNamed) {
     EXPECT_THAT(refusal(time + "[[track]]\nname = \"power_w\"\n"), HasSubstr("power_w has no source"));
     EXPECT_THAT(refusal(time + "[[track]]\nname = \"power_w\"\ncolumn = \"p\"\nvalue = 1\n"),
                 HasSubstr("power_w has a second source"));
+    const std::string twice = "[[track]]\nname = \"power_w\"\ncolumn = \"p\"\n";
+    EXPECT_THAT(refusal(time + twice + twice), HasSubstr("map.toml:6:1: power_w is named twice"));
+    EXPECT_THAT(
+        refusal(time + "[[track]]\nname = \"altitude_m\"\ncolumn = \"p\"\nunit = \"furlong\"\n"),
+        HasSubstr("'furlong' is no unit of altitude_m; expected a unit such as V, mA, mW, mAh, m, ft, cm/s, km/h, "
+                  "mph, kt, deg, rad or %, or its factor"));
     EXPECT_THAT(refusal("time = { column = \"t\", unit = \"h\" }\n"), HasSubstr("'h' is no unit of time"));
     EXPECT_EQ(test::rejected([] { parse_mapped_csv("t,u\n1,2\n", "f.csv", parse_column_map(small_map, "m")); }),
               "f.csv:1: has no column 'i'; its columns are t, u");
@@ -103,8 +114,150 @@ TEST(ColumnMap, OfAnUnknownHeaderIsAskedFor) {
 }
 
 TEST(ColumnMap, ShippedOnesAreRead) {
-    for (const auto* name : {"m100.toml", "example.toml"})
-        EXPECT_FALSE(read_column_map(test::source_dir() / "config" / "columns" / name).tracks.empty());
+    for (const auto& file : std::filesystem::directory_iterator(test::source_dir() / "config" / "columns"))
+        EXPECT_FALSE(read_column_map(file.path()).tracks.empty()) << file.path();
+}
+
+/// The series of a table that is recognised by its header, and has the flight of table_flight().
+FlightSeries recognised(const std::string& name, const std::string& text) {
+    const auto file = test::write_text(test::scratch_dir() / name, text);
+    EXPECT_TRUE(is_flight_csv(file, std::nullopt));
+    const auto loaded = load_flight(file);
+    const auto& sorties = loaded.phases.sorties;
+    EXPECT_EQ(sorties.size(), 1U);
+    if (sorties.size() != 1) return loaded.series;
+    const double first_s = power_track(loaded.series).time_s.front();
+    EXPECT_NEAR(sorties[0].start_s() - first_s, 30.0, 1.5);
+    EXPECT_NEAR(sorties[0].end_s() - first_s, 230.0, 1.5);
+    const auto power = power_track(loaded.series);
+    const double energy_j = integrated(power.time_s, power.value, sorties[0].start_s(), sorties[0].end_s());
+    EXPECT_NEAR(units::wh_from_joule(energy_j), test::table_flight_wh(), 0.01 * test::table_flight_wh());
+    EXPECT_TRUE(loaded.power.power_faults.empty());
+    return loaded.series;
+}
+
+using test::Moment;
+
+TEST(ShippedMaps, ReadBetaflightByBlackboxDecode) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("{:.0f}, {:.0f}, {:3}, {:.3f}, {:.3f}, {:.0f}, {:.0f}, ARM|HORIZON, IDLE", at.t_s * 500,
+                           5e6 + at.t_s * 1e6, 12, at.volt, at.ampere, at.height_m * 100, at.t_s);
+    };
+    const auto series = recognised(
+        "LOG00001.01.csv", test::flight_table("loopIteration, time (us), axisP[0], vbatLatest (V), amperageLatest (A), "
+                                              "BaroAlt (cm), energyCumulative (mAh), flightModeFlags (flags), "
+                                              "failsafePhase (flags)",
+                                              row));
+    EXPECT_EQ(series.firmware, "rotorcraft");
+    EXPECT_EQ(power_track(series).source, "vbatLatest (V) * amperageLatest (A)");
+    EXPECT_DOUBLE_EQ(power_track(series).time_s.front(), 5.0);
+}
+
+TEST(ShippedMaps, ReadInavByBlackboxDecodeInOtherUnits) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("{:.0f}, {:.6f}, {:.0f}, {:.0f}, {:.0f}, {:.2f}, {:.2f}, 0", at.t_s * 500, at.t_s,
+                           at.height_m * 100, at.volt * 1000, at.ampere * 1000, at.height_m / 0.3048, 3.6);
+    };
+    const auto series = recognised("inav.csv", test::flight_table("loopIteration, time (s), navPos[2], vbat (mV), "
+                                                                  "amperage (mA), BaroAlt (ft), GPS_speed (km/h), "
+                                                                  "stateFlags (flags)",
+                                                                  row));
+    EXPECT_EQ(series.firmware, "") << "INAV flies wings too";
+    EXPECT_DOUBLE_EQ(select_track(series, "ground_speed_m_per_s").value.front(), 1.0);
+}
+
+TEST(ShippedMaps, ReadEdgeTxWithSensorsOfFrSky) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("2026-01-{:02},{},90,5.0,{:.2f},{:.2f},{:.1f},12.0,33.5 -7.25,\"OK\",-1024,0x00", at.day,
+                           at.clock, at.volt, at.ampere, at.height_m / 0.3048);
+    };
+    const auto series = recognised(
+        "Model-2026-01-02.csv",
+        test::flight_table("Date,Time,RSSI(dB),RxBt(V),VFAS(V),Curr(A),Alt(ft),GSpd(kts),GPS,FM,Thr,LSW", row));
+    EXPECT_EQ(series.start_clock_s, 1767398280.0);
+    EXPECT_NEAR(select_track(series, "ground_speed_m_per_s").value.front(), 12.0 * 1852.0 / 3600.0, 1e-9);
+    EXPECT_DOUBLE_EQ(select_track(series, "longitude_deg").value.front(), -7.25);
+}
+
+TEST(ShippedMaps, ReadEdgeTxWithCrossfire) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("2026-01-{:02};{};-60;{:.1f};{:.1f};{:.0f};{:.0f};35,9;33.5 7.25", at.day, at.clock, at.volt,
+                           at.ampere, at.t_s * 5, at.height_m);
+    };
+    auto text = test::flight_table("Date;Time;1RSS(dB);RxBt(V);Curr(A);Capa(mAh);Alt(m);GSpd(kmh);GPS", row);
+    // As a spreadsheet of Germany saves it: decimal commas, but not in the texts of time and position.
+    for (std::size_t at = 0; (at = text.find(".", at)) != std::string::npos; ++at)
+        if (text[at + 2] == ';') text[at] = ',';
+    const auto series = recognised("crsf.csv", text);
+    EXPECT_NEAR(select_track(series, "ground_speed_m_per_s").value.front(), 35.9 / 3.6, 1e-9);
+    EXPECT_DOUBLE_EQ(select_track(series, "latitude_deg").value.front(), 33.5);
+}
+
+TEST(ShippedMaps, ReadAirData) {
+    const auto metric = [](const Moment& at) {
+        return fmt::format("{:.0f},2026-01-02 10:00:{:02},55.4,10.4,{:.1f},4.5,{:.3f},{:.2f},99,0,", at.t_s * 1000,
+                           static_cast<int>(at.t_s) % 60, at.height_m, at.volt, -at.ampere);
+    };
+    const auto series = recognised("a.csv", test::flight_table("time(millisecond),datetime(utc),latitude,longitude,"
+                                                               "height_above_takeoff(meters),speed(m/s),voltage(v),"
+                                                               "current(A),battery_percent, zSpeed(m/s),message",
+                                                               metric));
+    EXPECT_EQ(series.start_clock_s, 1767348000.0);
+    EXPECT_EQ(series.aircraft_name, "DJI");
+    const auto imperial = [](const Moment& at) {
+        return fmt::format("{:.0f},2026-01-02 10:00:00,55.4,10.4,{:.1f},10,{:.3f},{:.2f}", at.t_s * 1000,
+                           at.height_m / 0.3048, at.volt, at.ampere);
+    };
+    const auto other = recognised("b.csv", test::flight_table("time(millisecond),datetime(utc),latitude,longitude,"
+                                                              "height_above_takeoff(feet),speed(mph),voltage(v),"
+                                                              "current(A)",
+                                                              imperial));
+    EXPECT_DOUBLE_EQ(select_track(other, "ground_speed_m_per_s").value.front(), 4.4704);
+}
+
+TEST(ShippedMaps, ReadFlightRecorderLogsOfDroneDeploy) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("01/02/2026 10:00:00\t{:.3f}\t\tN/A\t{:.0f}\t{:.0f}\t{:.4f}\t{:.1f}\tVery Strong", at.t_s,
+                           at.ampere * -1000, at.volt * 1000, at.height_m / 0.3048, -10.0);
+    };
+    const auto series = recognised(
+        "2026-01-02.log",
+        "#DroneDeploy\t2.0\nSession ID\t1234\nAircraft Model\tInspire\nGimbal Firmware\n" +
+            test::flight_table("Date/Time (UTC)\tElapsed Time (sec)\tInfo\tBattery Power (%)\t"
+                               "Aircraft Battery Current (mA)\tAircraft Battery Voltage (mV)\t"
+                               "Aircraft Barometric Altitude (ft)\tAircraft Vel - Z (mph)\tAircraft GPS Signal",
+                               row) +
+            "#Flight Recorder Session End\nDate/Time (UTC)\t01/02/2026 10:04:20\nElapsed Time (sec)\t260\n");
+    EXPECT_EQ(series.flight, "2026-01-02");
+    EXPECT_DOUBLE_EQ(select_track(series, "climb_m_per_s").value.front(), 4.4704) << "down is positive in the log";
+    EXPECT_EQ(describe(series.skipped.at(0)), "another number of cells than the header: 2 lines, first at line 1308");
+}
+
+TEST(ShippedMaps, ReadFlightRecordsOfDji) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("1/2/2026,10:00:01.5 AM,0m {0:.1f}s,{0:.1f},{1:.1f},8.1,{2:.3f},{3:.2f},False", at.t_s,
+                           at.height_m / 0.3048, at.volt, -at.ampere);
+    };
+    const auto series = recognised(
+        "DJIFlightRecord.csv",
+        "sep=,\n" + test::flight_table("CUSTOM.date [local],CUSTOM.updateTime [local],OSD.flyTime,OSD.flyTime [s],"
+                                       "OSD.height [ft],OSD.hSpeed [MPH],BATTERY.voltage [V],BATTERY.current [A],"
+                                       "OSD.isMotorUp",
+                                       row));
+    EXPECT_EQ(power_track(series).source, "BATTERY.voltage [V] * BATTERY.current [A]");
+    EXPECT_NEAR(select_track(series, "ground_speed_m_per_s").value.front(), 8.1 * 0.44704, 1e-9);
+}
+
+TEST(ShippedMaps, LeaveOutTracksThatAFileLacks) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("{:.0f},{:.0f},{:.3f},{:.3f}", at.t_s, at.t_s * 1e6, at.volt, at.ampere);
+    };
+    const auto file =
+        test::write_text(test::scratch_dir() / "a.csv",
+                         test::flight_table("loopIteration,time (us),vbatLatest (V),amperageLatest (A)", row));
+    const auto series = read_candidates(FlightFile(file), std::nullopt).at(0);
+    EXPECT_TRUE(select_track(series, "altitude_m").empty());
+    EXPECT_EQ(power_track(series).time_s.size(), test::table_flight().size());
 }
 
 TEST(ColumnMap, FlightsOfTheBenchmarkHaveTheirEnergy) {

@@ -29,6 +29,7 @@ constexpr double max_pack_v = 60.0;        // 14 LiPo cells
 constexpr double min_pack_v = 2.5;         // one cell, empty
 constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
 constexpr double min_mean_power_w = 3.0;
+constexpr double max_mean_power_w = 20e3;  // of some 100 kg in the air
 
 using Test = bool (*)(const PowerRecord&, std::size_t);
 
@@ -201,6 +202,9 @@ constexpr PowerRule rules[] = {
     {.findings = powerless_climb, .warn_above = 10.0},
     {.text = "the mean power of {mean_w:.3g} W in flight is less than an aircraft needs: is its unit W?",
      .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; },
+     .warn_above = 0.0},
+    {.text = "the mean power of {mean_w:.3g} W in flight is more than a small aircraft draws: is its unit W?",
+     .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s > max_mean_power_w; },
      .warn_above = 0.0},
     {.text =
          "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: earlier power is missing",

@@ -131,6 +131,23 @@ bool jumps_too_far(const Track& track) {
     return false;
 }
 
+/// The first change, over several samples, that is too fast for the same reason as a jump; empty without one.
+IndexSpan find_too_fast(const Track& track) {
+    const auto allowed_m = allowed_after_pause_m(track);
+    IndexSpan climb{0, 0};  // from the sample with the least altitude less what is climbed at jump_m_per_s
+    IndexSpan dive{0, 0};
+    for (std::size_t i = 0; i < track.value.size(); ++i) {
+        for (auto* change : {&climb, &dive}) {
+            const double sign = change == &climb ? 1.0 : -1.0;
+            const double gained_m = sign * (track.value[i] - track.value[change->begin]);
+            const double most_m = jump_m_per_s * (track.time_s[i] - track.time_s[change->begin]);
+            if (gained_m > jump_m + most_m) return {change->begin, i};
+            if (gained_m < most_m || allowed_m[i] > 0.0) change->begin = i;
+        }
+    }
+    return {0, 0};
+}
+
 }  // namespace
 
 CleanedAltitude clean_altitude(Track altitude) {
@@ -167,6 +184,11 @@ CleanedAltitude clean_altitude(Track altitude) {
             fmt::format("{} of {} altitudes are removed, between jumps away and back, first at {:.1f} s", removed, all,
                         first_jump_s));
     }
+    if (const auto [from, to] = find_too_fast(left); to > from && jumps.empty())
+        record.warnings.push_back(fmt::format(
+            "the altitude changes by {:+.0f} m in {:.2g} s at {:.1f} s, faster than an aircraft: is the time in s, and "
+            "the altitude in m?",
+            left.value[to] - left.value[from], left.time_s[to] - left.time_s[from], left.time_s[from]));
     if (!jumps.empty()) {
         const auto i = jumps.front();
         record.warnings.push_back(

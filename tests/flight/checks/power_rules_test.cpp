@@ -217,6 +217,10 @@ TEST(PowerRules, OfAMeanThatNothingFliesOn) {
     EXPECT_THAT(of_mean(2.9),
                 Contains("the mean power of 2.9 W in flight is less than an aircraft needs: is its unit W?"));
     EXPECT_THAT(of_mean(3.1), IsEmpty());
+    EXPECT_THAT(of_mean(19.9e3), IsEmpty());
+    EXPECT_THAT(of_mean(20.1e3),
+                Contains("the mean power of 2.01e+04 W in flight is more than a small aircraft draws: is "
+                         "its unit W?"));
 }
 
 TEST(PowerRules, OfAMeanBelowZeroAndOfPowerThatDoesNotChange) {

@@ -60,6 +60,21 @@ TEST(AltitudeRecord, LeavesOutAnEstimatorThatLosesItsFixForAWhile) {
     EXPECT_THAT(phases.warnings[0], HasSubstr("altitudes are removed, between jumps away and back, first at 2"));
 }
 
+TEST(AltitudeRecord, WarnsOfAClimbThatNoAircraftFlies) {
+    const auto warnings_of = [](double climb_m_per_s) {
+        Track altitude{.name = "altitude_m"};
+        for (int i = 0; i < 200; ++i) {
+            altitude.time_s.push_back(i / 20.0);
+            altitude.value.push_back(std::clamp(i / 20.0 - 4.0, 0.0, 1.0) * climb_m_per_s);
+        }
+        return clean_altitude(altitude).warnings;
+    };
+    EXPECT_THAT(warnings_of(65.0), testing::IsEmpty());
+    EXPECT_THAT(warnings_of(160.0),
+                testing::ElementsAre(HasSubstr("m in 0.15 s at 4.0 s, faster than an aircraft: is the time in s")));
+    EXPECT_THAT(warnings_of(-160.0), testing::ElementsAre(HasSubstr("faster than an aircraft")));
+}
+
 TEST(AltitudeRecord, LeavesOutAnEstimatorThatStandsStillForLonger) {
     const auto phases = phases_with([](double t, double& altitude_m) {
         if (t > 200 && t < 300) altitude_m = -17.0;

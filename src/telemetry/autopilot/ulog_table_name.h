@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+/// Names of the tables that ulog2csv writes of a log: LOG_TOPIC_INSTANCE.csv.
+namespace flightwatt::telemetry {
+
+/// One of these is in every log of a flight; the first that a folder has represents the log.
+inline constexpr const char* representative_topics[] = {"battery_status", "vehicle_air_data", "vehicle_global_position",
+                                                        "vehicle_local_position", "vehicle_gps_position"};
+
+/// Where "_0" begins in "log_battery_status_0"; npos if the name has no such end.
+inline std::size_t instance_mark(const std::string& name) {
+    const auto mark = name.find_last_not_of("0123456789");
+    return mark == std::string::npos || mark + 1 == name.size() || name[mark] != '_' ? std::string::npos : mark;
+}
+
+/// The log of a table that represents it: "log" of "log_battery_status_0". Other names as they are.
+inline std::string without_topic(std::string name) {
+    if (const auto mark = instance_mark(name); mark != std::string::npos)
+        for (const std::string topic : representative_topics)
+            if (name.substr(0, mark).ends_with("_" + topic)) return name.substr(0, mark - topic.size() - 1);
+    return name;
+}
+
+}  // namespace flightwatt::telemetry
