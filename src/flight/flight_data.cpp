@@ -128,9 +128,10 @@ std::string no_power_reason(const FlightData& data) {
 
 void require_power(const FlightData& data, const std::string& messages) {
     if (const auto& restart = data.clock_restart) {
+        const auto aircraft = data.aircraft_id.empty() ? "" : fmt::format("aircraft {}, ", data.aircraft_id);
         throw InputError({data.file},
-                         fmt::format("the clock runs back from {:.3f} to {:.3f} s (aircraft {}, {})", restart->from_s,
-                                     restart->to_s, data.aircraft_id, restart->message),
+                         fmt::format("the clock runs back from {:.3f} to {:.3f} s ({}{})", restart->from_s,
+                                     restart->to_s, aircraft, restart->message),
                          "the file has several recordings that overlap: separate their lines");
     }
     if (!data.power_w.empty()) return;

@@ -9,7 +9,6 @@
 #include "flight/sources/log_family.h"
 #include "flight/sources/mapped_csv.h"
 #include "flight/telemetry_series.h"
-#include "telemetry/autopilot/ulog_tables.h"
 #include "telemetry/recordings.h"
 
 #include <algorithm>
