@@ -190,7 +190,7 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
     const auto& options = arguments.load;
     Exported result;
     if (const auto& message = arguments.message) {
-        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id);
+        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft);
         if (!table.left_out.empty())
             result.notes.push_back(
                 fmt::format("{}: {} holds no numbers in {}", file, *message, short_list(table.left_out)));

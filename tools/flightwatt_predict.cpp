@@ -34,7 +34,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
     options.sortie.reset();
     options.flight_required = false;
     const auto& file = call.inputs.front();
-    auto candidates = read_candidates(flight::FlightFile(file, options), options.aircraft_id);
+    auto candidates = read_candidates(flight::FlightFile(file, options), options.aircraft);
     const double until_s = cli::resolve_log_time(time, candidates, sortie, options.segmentation);
     for (auto& series : candidates) series = truncate_series(series, until_s);
     auto series = choose_aircraft(std::move(candidates));

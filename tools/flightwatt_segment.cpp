@@ -64,8 +64,9 @@ void add_flight(const cli::StageCall& call, const std::string& file, const fligh
 }
 
 /// The flights of several logs and folders. One that cannot be used is skipped.
-void segment_several(const cli::StageCall& call, const flight::LoadOptions& options, SegmentedFlights& segmented) {
-    const auto files = cli::files_of(call, options);
+void segment_several(const cli::StageCall& call, flight::LoadOptions options, SegmentedFlights& segmented) {
+    const auto files = cli::files_of_aircraft(call, cli::files_of(call, options), options);
+    options.aircraft_required = false;
     std::vector<std::string> names(files.size());
     std::ranges::transform(files, names.begin(), cli::flight_of_file);
     cli::refuse_unknown_flights(options, names);

@@ -173,6 +173,9 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
             field("is_of_other_aircraft", &R::is_of_other_aircraft),
             field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
             field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
+            field("kind", &R::kind, "kind of vehicle: `fixedwing`, `rotorcraft`, `rover`; empty: unknown", csv_column{}),
+            field("pack_voltage_v", &R::pack_voltage_v, "highest voltage, less 1 % of the samples", csv_column{}),
+            field("cruise_power_w", &R::cruise_power_w, "mean power of all cruises of the log", csv_column{}),
             field("payload_kg", &R::payload_kg, "payload, if the file states it", csv_column{}),
             field("power_source", &R::power_source, "message of the power", csv_column{}),
             field("error", &R::error, "reason of a rejected log", csv_column{}),
@@ -194,8 +197,12 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     FlightRecord record;
     record.flight = series.flight;
     record.accepted = true;
-    record.aircraft_id = series.aircraft_id;
-    record.aircraft_name = series.aircraft_name;
+    const auto aircraft = aircraft_of(loaded);
+    record.aircraft_id = aircraft.id;
+    record.aircraft_name = aircraft.name;
+    record.kind = aircraft.kind;
+    record.pack_voltage_v = aircraft.pack_voltage_v;
+    record.cruise_power_w = aircraft.cruise_power_w;
     record.payload_kg = payload_kg(series);
     record.content = content_of(series);
     record.power_source = power_track(series).source;
@@ -212,6 +219,11 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
         }
     }
     return record;
+}
+
+FlightAircraft aircraft_of(const FlightRecord& record) {
+    return {record.flight, record.aircraft_id,    record.aircraft_name,
+            record.kind,   record.pack_voltage_v, record.cruise_power_w};
 }
 
 std::string to_json_text(const FlightRecord& record) {

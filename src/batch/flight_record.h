@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/aircraft.h"
 #include "flight/flight_identity.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
@@ -40,6 +41,9 @@ struct FlightRecord {
     bool is_of_other_aircraft = false;  ///< rejected as it has no data of --aircraft
     std::string aircraft_id;
     std::string aircraft_name;
+    std::string kind;  ///< these three: see FlightAircraft
+    std::optional<double> pack_voltage_v;
+    std::optional<double> cruise_power_w;
     std::optional<double> payload_kg;  ///< see flight::payload_kg
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
@@ -57,6 +61,8 @@ Fields<FlightRecord> record_fields(const FlightRecord*);
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
+
+FlightAircraft aircraft_of(const FlightRecord& record);
 
 /// The record as JSON with a seal, the fingerprint of its text, and back; std::nullopt for a record of another version
 /// or one that was changed.

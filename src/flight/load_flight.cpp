@@ -22,7 +22,8 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t min_altitudes = 2;  // for segmentation
+constexpr std::size_t min_altitudes = 2;     // for segmentation
+constexpr std::size_t min_id_beginning = 4;  // characters: more than a whole id of Paparazzi has
 
 /// "GPS 310, ALIVE 12, ...".
 std::string shown_census(const FlightFile& file) {
@@ -53,9 +54,10 @@ void name_synthetic(const FlightFile& file, std::vector<FlightSeries>& candidate
 }
 
 /// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
-FlightSeries read_series(const FlightFile& file, const std::optional<std::string>& aircraft_id, bool power_required) {
-    auto series = choose_aircraft(read_candidates(file, aircraft_id));
-    const bool needs_power = power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
+FlightSeries read_series(const FlightFile& file, const LoadOptions& options) {
+    auto series = choose_aircraft(read_candidates(file, options.aircraft, options.aircraft_required),
+                                  options.aircraft.has_value());
+    const bool needs_power = options.power_required || SelectedTracks(series)["altitude_m"].time_s.size() < min_altitudes;
     if (series.clock_restart || (needs_power && power_track(series).empty())) require_power(series, shown_census(file));
     return series;
 }
@@ -165,7 +167,17 @@ FlightSeries read_autopilot(const FlightFile& file) {
     return family_series(read_autopilot_log(file.text(), format, file.path(), family_messages(family)), family);
 }
 
-std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+/// Of the aircraft of a log, with their names, those that a text names: by id, else by name or the beginning of an id.
+std::vector<std::string> named_aircraft(const std::string& text, const std::map<std::string, std::string>& names) {
+    if (names.contains(text)) return {text};
+    std::vector<std::string> ids;
+    for (const auto& [id, name] : names)
+        if (name == text || (text.size() >= min_id_beginning && id.starts_with(text))) ids.push_back(id);
+    return ids;
+}
+
+std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::optional<std::string>& aircraft,
+                                           bool required) {
     std::vector<FlightSeries> candidates;
     std::vector<std::string> ids;
     if (file.is_series() || file.autopilot()) {
@@ -173,23 +185,28 @@ std::vector<FlightSeries> parse_candidates(const FlightFile& file, const std::op
         candidates.push_back(map                ? parse_mapped_csv(file.text(), file.path(), *map)
                              : file.is_series() ? parse_series_csv(file.text(), file.path())
                                                 : read_autopilot(file));
-        ids.push_back(candidates.front().aircraft_id);
-        if (!aircraft_id || ids.front().empty() || ids.front() == *aircraft_id) return candidates;
+        const auto& series = candidates.front();
+        ids.push_back(series.aircraft_id);
+        if (!aircraft || !required || ids.front().empty() || series.flight == *aircraft ||
+            !named_aircraft(*aircraft, {{series.aircraft_id, series.aircraft_name}}).empty())
+            return candidates;
     } else {
         auto log = read_log(file);
-        for (const auto& sender : log.senders) ids.push_back(sender.id);
-        if (!aircraft_id) {
-            candidates = all_candidates(std::move(log));
-            name_synthetic(file, candidates);
-            return candidates;
+        std::map<std::string, std::string> names;
+        for (const auto& sender : log.senders) {
+            ids.push_back(sender.id);
+            const auto* known = log.configuration ? &log.configuration->aircraft : nullptr;
+            names[sender.id] = known != nullptr && known->contains(sender.id) ? known->at(sender.id).name : "";
         }
-        if (std::find(ids.begin(), ids.end(), *aircraft_id) != ids.end()) {
-            candidates.push_back(flight_series(log, *aircraft_id));
-            name_synthetic(file, candidates);
-            return candidates;
-        }
+        if (aircraft)
+            for (const auto& id : named_aircraft(*aircraft, names)) candidates.push_back(flight_series(log, id));
+        const bool takes_any =
+            !aircraft || !required || telemetry::flight_name(file.path()) == *aircraft;
+        if (candidates.empty() && takes_any) candidates = all_candidates(std::move(log));
+        name_synthetic(file, candidates);
+        if (!candidates.empty()) return candidates;
     }
-    throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
+    throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft),
                              "the log has " + short_list(ids));
 }
 
@@ -248,14 +265,15 @@ std::vector<std::string> census_of(const FlightFile& file) {
     return names;
 }
 
-std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    auto candidates = parse_candidates(file, aircraft_id);
+std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft,
+                                          bool required) {
+    auto candidates = parse_candidates(file, aircraft, required);
     for (auto& series : candidates)
         if (!file.log_error().empty()) series.notes.push_back(file.log_error());
     return candidates;
 }
 
-FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
+FlightSeries choose_aircraft(std::vector<FlightSeries> candidates, bool of_others) {
     if (candidates.size() == 1) return std::move(candidates.front());
     std::vector<std::string> reasons(candidates.size());
     std::ranges::transform(candidates, reasons.begin(), not_flown_reason);
@@ -269,10 +287,13 @@ FlightSeries choose_aircraft(std::vector<FlightSeries> candidates) {
         last = i;
     }
     if (ids.size() > 1) {
-        throw InputError(
-            {candidates.front().file},
-            fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew", short_list(ids)),
-            any ? "select one with --aircraft ID" : "");
+        const auto& file = candidates.front().file;
+        const auto found = short_list(ids);
+        if (!any) throw InputError({file}, "none of its aircraft flew: " + found);
+        const auto several = "several aircraft flew: " + found;
+        const auto* hint = "select one with --aircraft ID";
+        if (of_others) throw OtherAircraftError({file}, several, hint);
+        throw InputError({file}, several, hint);
     }
     return std::move(candidates[last]);
 }
@@ -326,7 +347,7 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
 }
 
 LoadedFlight load_flight(const FlightFile& file, const LoadOptions& options) {
-    auto loaded = segment_and_check(read_series(file, options.aircraft_id, options.power_required), options);
+    auto loaded = segment_and_check(read_series(file, options), options);
     warn_of_missing_ends(loaded);  // not in segment_and_check: predict processes logs that end in the air
     return loaded;
 }
@@ -339,8 +360,8 @@ LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& o
     }
 }
 
-FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft_id) {
-    return read_series(FlightFile(path), aircraft_id, true);
+FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft) {
+    return read_series(FlightFile(path), {.aircraft = aircraft});
 }
 
 }  // namespace flightwatt::flight

@@ -22,13 +22,16 @@ namespace flightwatt::flight {
 
 /// Options of reading, segmenting and checking a flight, common to all programs.
 struct LoadOptions {
-    std::optional<std::string> aircraft_id;  ///< one of several in the log
-    std::optional<std::size_t> sortie;       ///< from 1: the other sorties are ignored
-    SegmentationOptions segmentation;
+    /// One of several in the log: by its id, the beginning of its id, its name; or any of the log with this name.
+    std::optional<std::string> aircraft = {};
+    std::optional<std::size_t> sortie = {};  ///< from 1: the other sorties are ignored
+    SegmentationOptions segmentation = {};
     bool correct_idle_offset = false;     ///< see correct_idle_offset()
     std::set<std::string> excluded = {};  ///< flights that are not used
     std::set<std::string> keep = {};      ///< flights that are used despite power faults
     bool simulated = false;               ///< flights of a simulator (SITL, HITL) are used too
+    /// False: a log without that aircraft is read as if none were named.
+    bool aircraft_required = true;
     /// False: a log without altitude or flight is accepted, and has no phases.
     bool flight_required = true;
     /// False: a log without measured power is accepted if it has an altitude.
@@ -103,17 +106,19 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
 /// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
 std::vector<std::string> census_of(const FlightFile& file);
 
-/// The log is valid, but has no data of the requested aircraft.
+/// The log is valid, but has no data of the requested aircraft, or of several of which one is requested.
 class OtherAircraftError : public InputError {
     using InputError::InputError;
 };
 
-/// The series of the named aircraft, else of all that sent telemetry, without checks. Throws InputError if the file has
-/// no telemetry, OtherAircraftError if the named aircraft sent nothing.
-std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
+/// The series of that aircraft (LoadOptions::aircraft), else of all that sent telemetry, without checks. Throws
+/// InputError if the file has no telemetry, OtherAircraftError without that aircraft, if it is required.
+std::vector<FlightSeries> read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft,
+                                          bool required = true);
 
-/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several.
-FlightSeries choose_aircraft(std::vector<FlightSeries> candidates);
+/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several, of logs that may be
+/// `of_others` OtherAircraftError.
+FlightSeries choose_aircraft(std::vector<FlightSeries> candidates, bool of_others = false);
 
 FlightAssessment assess_flight(const SelectedTracks& tracks, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
@@ -134,6 +139,6 @@ LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& o
 
 /// Only the series. Throws InputError without measured power.
 FlightSeries read_flight(const std::filesystem::path& path,
-                         const std::optional<std::string>& aircraft_id = std::nullopt);
+                         const std::optional<std::string>& aircraft = std::nullopt);
 
 }  // namespace flightwatt::flight
