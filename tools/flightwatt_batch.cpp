@@ -6,6 +6,8 @@
 #include "batch/batch_fit.h"
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
+#include "batch/merge.h"
+#include "cli/output/aircraft_choice.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/physical_output.h"
@@ -20,6 +22,8 @@
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -49,17 +53,14 @@ batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& b
     };
 }
 
-void report_notes(const cli::StageCall& call, const batch::BatchFlights& flights) {
-    for (const auto& flight : flights) {
-        for (const auto& warning : flight.record.warnings) {
-            cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
-        }
-        for (const auto& exclusion : flight.selection.exclusions) cli::warn(call, to_string(exclusion));
-        if (!flight.record.accepted) {
-            cli::note(call,
-                      fmt::format("{}: {}: {}", flight.record.flight,
-                                  flight.record.is_of_other_aircraft ? "left out" : "rejected", flight.record.error));
-        }
+void report_notes(const cli::StageCall& call, const batch::BatchFlight& flight) {
+    if (flight.is_of_other_aircraft) return;
+    for (const auto& warning : flight.record.warnings)
+        cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
+    for (const auto& exclusion : flight.selection.exclusions) cli::warn(call, to_string(exclusion));
+    if (!flight.record.accepted) {
+        cli::note(call, fmt::format("{}: {}: {}", flight.record.flight,
+                                    flight.record.is_of_other_aircraft ? "left out" : "rejected", flight.record.error));
     }
 }
 
@@ -69,6 +70,26 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
     if (removed.empty()) return;
     cli::note(call, fmt::format("removed: {}: they are an earlier run's, and this one has no model for {}",
                                 fmt::join(removed, ", "), out.string()));
+}
+
+/// The fitted flights by aircraft.
+struct FlownAircraft {
+    std::vector<batch::FlightAircraft> flights;
+    std::vector<batch::AircraftGroup> groups;
+    std::set<std::string> others = {};  ///< flights that --aircraft leaves out
+};
+
+/// Leaves the flights of --aircraft for the fit. Throws UsageError where it names none.
+FlownAircraft choose_aircraft(const cli::StageCall& call, const batch::BatchOptions& options,
+                              batch::BatchFlights& flights) {
+    FlownAircraft flown{fitted_aircraft(flights), {}};
+    flown.groups = batch::group_aircraft(flown.flights);
+    const auto& wanted = options.load.aircraft;
+    if (!wanted || flown.groups.empty()) return flown;
+    const auto& chosen = find_aircraft(*wanted, flown.groups, flown.flights);
+    cli::note_other_flights(call, flown.groups, chosen, flown.flights);
+    flown.others = keep_aircraft(flights, chosen, flown.flights);
+    return flown;
 }
 
 /// A fit with its Table I, and how its physical model came about, where one was asked for.
@@ -82,7 +103,7 @@ struct FittedBatch {
 /// fitted.
 std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArguments& arguments,
                                      const batch::BatchFlights& flights, const batch::BatchOptions& batch,
-                                     std::vector<batch::DuplicateFlight> copies,
+                                     const FlownAircraft& flown, std::vector<batch::DuplicateFlight> copies,
                                      const std::optional<mechanical::MechanicalModel>& published) {
     const auto totals = totals_of(flights);
     if (totals.accepted == 0) {
@@ -97,11 +118,9 @@ std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArgu
         cli::note(call, "nothing was fitted");
         return std::nullopt;
     }
-    if (const auto mix = mixed_aircraft_reason(flights); !mix.empty() && !arguments.flights.mix_aircraft)
-        throw NoResultError(
-            fmt::format("the catalogue is written, and no model: the flights are of several aircraft: {}; "
-                        "--exclude flights, or fit all as if they were of one with --mix-aircraft",
-                        mix));
+    if (flown.groups.size() > 1 && !batch.load.aircraft && !arguments.flights.mix_aircraft)
+        throw NoResultError("the catalogue is written, and no model: " +
+                            cli::show_aircraft(call, flown.groups, flown.flights, true));
     const auto& options = arguments.model.fit;
     const auto kind = arguments.model.kind;
     auto measured = read_samples(flights, batch);
@@ -117,6 +136,7 @@ std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArgu
     fit.copies = std::move(copies);
     fit.excluded = batch.load.excluded;
     fit.keep = batch.load.keep;
+    fit.other_aircraft = flown.others;
     fitted.table = cli::model_table(fit.model, published);
     for (const auto* name : batch::table_names)
         write_file_atomically(batch.out / name, cli::table_text(fitted.table, name),
@@ -141,25 +161,44 @@ Fields<BatchFlight> record_fields(const BatchFlight*) {
 
 namespace {
 
+/// Result of --each for one aircraft.
+struct AircraftFolder {
+    std::string aircraft;
+    std::string folder;
+    std::vector<std::string> flights;
+    bool has_model = false;
+};
+
+Fields<AircraftFolder> record_fields(const AircraftFolder*) {
+    using R = AircraftFolder;
+    return {field("aircraft", &R::aircraft, "text for --aircraft"), field("folder", &R::folder, "folder of its batch"),
+            field("flights", &R::flights, "flights of its fit"),
+            field("has_model", &R::has_model, "a model was fitted")};
+}
+
 /// JSON of the stage.
 struct BatchOutput {
     const cli::FitOutput* fit = nullptr;
+    const std::vector<AircraftFolder>* each = nullptr;
     const batch::BatchFlights* logs = nullptr;
 };
 
 Fields<BatchOutput> record_fields(const BatchOutput*) {
     using R = BatchOutput;
-    return list_fields<R>(embedded_if_any(at(&R::fit)), field("logs", &R::logs, "all logs of the folder"));
+    return list_fields<R>(embedded_if_any(at(&R::fit)),
+                          field("aircraft", &R::each, "of --each: folder of each aircraft", optional_key{}),
+                          field("logs", &R::logs, "all logs of the folder"));
 }
 
 /// The table of the flights, or of the first 1000 of them.
 std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& flights,
-                         const batch::BatchOptions& options) {
+                         std::span<const batch::AircraftGroup> groups, const batch::BatchOptions& options) {
     constexpr std::size_t max_logs = 1000;
-    const cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
-                                       {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
-                                        "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
-    auto text = screen_text(flights_table(flights, max_logs), screen_of(call), shown_first);
+    cli::ScreenTable shown_first{fmt::format("{}: {} logs", options.out.string(), flights.size()),
+                                 {"flight", "cruise s", "cruise W", "energy Wh", "phases fitted", "take-off s",
+                                  "landing s", "take-off W", "landing W", "warnings", "gaps", "longest s"}};
+    if (groups.size() > 1) shown_first.first.insert(shown_first.first.begin() + 1, "aircraft");
+    auto text = screen_text(flights_table(flights, max_logs, short_ids(groups)), screen_of(call), shown_first);
     if (flights.size() > max_logs) {
         text += fmt::format("the first {} of {} logs; {} has all\n", max_logs, flights.size(),
                             (options.out / batch::catalogue_name).string());
@@ -175,19 +214,20 @@ int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
     return cli::input_rejected;
 }
 
-/// Writes the catalogue and the fit, then prints them, so that a closed standard output loses no file. Returns the exit
-/// code.
-int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
-           const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
+/// Writes the catalogue and the fit of a folder, then prints them, so that a closed standard output loses no file.
+std::optional<FittedBatch> finish_folder(const cli::StageCall& call, const BatchArguments& arguments,
+                                         batch::BatchFlights& flights, const batch::BatchOptions& options,
+                                         const std::optional<mechanical::MechanicalModel>& published) {
     const auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
-    report_notes(call, flights);
+    const auto flown = choose_aircraft(call, options, flights);
+    for (const auto& flight : flights) report_notes(call, flight);
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
-    const auto shown = flights_text(call, flights, options);
+    const auto shown = flights_text(call, flights, flown.groups, options);
     std::optional<FittedBatch> fitted;
     try {
-        fitted = fit_batch(call, arguments, flights, options, copies, published);
+        fitted = fit_batch(call, arguments, flights, options, flown, copies, published);
     } catch (const std::exception&) {
         remove_model(call, options.out);
         if (!call.json) cli::print(shown);
@@ -197,16 +237,69 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
         warn_of_model(call, fitted->fit.model);
     else
         remove_model(call, options.out);
-    const auto* physical = fitted && fitted->physical ? &*fitted->physical : nullptr;
+    if (call.json) return fitted;
+    const auto screen = screen_of(call);
+    cli::print(shown + (fitted ? "\n" + screen_text(fitted->table, screen, {"Table I", {}}) : "") +
+               (fitted && fitted->physical ? "\n" + cli::physical_text(*fitted->physical, screen) : ""));
+    return fitted;
+}
+
+/// Finishes the folder of a run. Returns the exit code.
+int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
+           const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
+    const auto fitted = finish_folder(call, arguments, flights, options, published);
     if (call.json) {
-        const auto fit = fitted ? std::optional(cli::FitOutput{&fitted->fit.model, physical}) : std::nullopt;
-        cli::print_json(call, BatchOutput{fit ? &*fit : nullptr, &flights});
-    } else {
-        const auto screen = screen_of(call);
-        cli::print(shown + (fitted ? "\n" + screen_text(fitted->table, screen, {"Table I", {}}) : "") +
-                   (physical != nullptr ? "\n" + cli::physical_text(*physical, screen) : ""));
+        std::optional<cli::FitOutput> fit;
+        if (fitted) fit = {&fitted->fit.model, fitted->physical ? &*fitted->physical : nullptr};
+        cli::print_json(call, BatchOutput{fit ? &*fit : nullptr, nullptr, &flights});
     }
     return exit_code(call, totals_of(flights));
+}
+
+/// Makes a batch of the flights of one aircraft, from the folder of all, with its fit.
+AircraftFolder finish_one(const cli::StageCall& call, const BatchArguments& arguments,
+                          const batch::AircraftGroup& group, const FlownAircraft& flown, const batch::BatchOptions& all,
+                          const std::optional<mechanical::MechanicalModel>& published) {
+    AircraftFolder made{group.selector, (all.out / cli::file_name_of(group.selector)).string(), {}, false};
+    for (const auto number : group.flights) made.flights.push_back(flown.flights[number].flight);
+    auto options = all;
+    options.out = made.folder;
+    make_directories(options.out);
+    const auto plan = batch::plan_merge({all.out}, options.out, true, {made.flights.begin(), made.flights.end()});
+    refuse_foreign_files(plan.folder, options.out);
+    const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
+    prepare_folder(plan.folder, options.out);
+    const auto quietly = [](std::size_t, std::size_t, const auto&) {};
+    auto own = call;
+    own.output = made.folder;
+    if (!call.json) cli::print(fmt::format("{}:\n", made.folder));
+    auto flights = merge_flights(plan, options.out, options.min_samples, quietly, options.load);
+    try {
+        made.has_model = finish_folder(own, arguments, flights, options, published).has_value();
+    } catch (const NoResultError& error) {
+        cli::warn(call, fmt::format("{}: no model: {}", made.folder, error.what()));
+    }
+    return made;
+}
+
+/// Makes a batch of each aircraft in the folder of all flights. Returns the exit code.
+int finish_each(const cli::StageCall& call, const BatchArguments& arguments, batch::BatchFlights flights,
+                const batch::BatchOptions& options, const std::optional<mechanical::MechanicalModel>& published) {
+    exclude_duplicates(flights, find_duplicates(flights));
+    write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
+                          options.out / batch::temporary_folder);
+    remove_model(call, options.out);
+    const auto flown = choose_aircraft(call, options, flights);
+    for (const auto& flight : flights)
+        if (flight.selection.flights.empty()) report_notes(call, flight);
+    if (flown.groups.empty()) throw InputError({}, "no flight can be fitted", "see the reasons above");
+    std::vector<AircraftFolder> made;
+    for (const auto& group : cli::certain_aircraft(call, flown.groups, flown.flights))
+        made.push_back(finish_one(call, arguments, group, flown, options, published));
+    if (call.json) cli::print_json(call, BatchOutput{nullptr, &made, &flights});
+    const auto code = exit_code(call, totals_of(flights));
+    const bool any_failed = std::ranges::any_of(made, [](const auto& one) { return !one.has_model; });
+    return any_failed ? cli::no_answer : code;
 }
 
 std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, const cli::FlightFilter& filter,
@@ -277,6 +370,7 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     batch::BatchOptions options;
     options.out = *call.output;
     options.load = arguments.flights.load;
+    options.load.aircraft_required = false;
     options.min_samples = mechanical::min_samples(arguments.model.fit.phases.order);
     const auto published = read_published(arguments.model);
     make_directories(options.out);
@@ -292,7 +386,8 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     std::vector<std::string> names;
     for (const auto& flight : flights) names.push_back(flight.record.flight);
     cli::refuse_unknown_flights(options.load, names);
-    return finish(call, arguments, std::move(flights), options, published);
+    return arguments.flights.each ? finish_each(call, arguments, std::move(flights), options, published)
+                                  : finish(call, arguments, std::move(flights), options, published);
 }
 
 }  // namespace
@@ -308,6 +403,8 @@ others are processed; the exit code is then 3. Flights of earlier runs into OUT 
 OUT/batch.json, is refused. Logs of a folder below FOLDER that holds a file not-fitted.txt are
 listed and excluded from the fit; its first line states the reason.
 
+Of flights of several aircraft, --aircraft fits those of one. --each makes the folder of a batch for each of them.
+
 It may be ended at any time (Ctrl-C): the same command continues where it stopped, with the same results.)"};
     stage.examples = {"flightwatt batch logs -o my",
                       "flightwatt batch logs -o my --aircraft 5 --since 2020-07-01 --prune"};
@@ -316,6 +413,7 @@ It may be ended at any time (Ctrl-C): the same command continues where it stoppe
         std::error_code none;
         if (std::filesystem::exists(std::filesystem::path(*call.output) / "model.toml", none))
             return "flightwatt battery {} --capacity AH -o pack.toml";
+        if (call.has("each")) return "flightwatt battery {}/AIRCRAFT --capacity AH -o pack.toml";
         return call.has("no-fit") ? "flightwatt fit {} -o MODEL.toml" : "";
     };
     stage.json_schema = [] {
@@ -336,6 +434,8 @@ It may be ended at any time (Ctrl-C): the same command continues where it stoppe
                 "also the logs that LIST names, one path a line; - is the standard input. A missing log is rejected");
     options.add("no-fit", arguments.no_fit,
                 "write OUT/flights and OUT/flights.csv alone: flightwatt fit fits the folders of several batches");
+    cli::add_each_option(options, arguments.flights,
+                         "a folder OUT/AIRCRAFT for each aircraft, with its flights and its model", {"no-fit"});
     options.add("prune", arguments.prune, "drop the flights of earlier runs that are not among the logs given");
     cli::add_filter_options(options, arguments.filter);
     cli::add_flight_options(options, arguments.flights);

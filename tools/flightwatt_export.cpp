@@ -190,7 +190,7 @@ Exported export_columns(const cli::StageCall& call, const ExportArguments& argum
     const auto& options = arguments.load;
     Exported result;
     if (const auto& message = arguments.message) {
-        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft_id,
+        auto table = exchange::message_table(flight::FlightFile(file, options), *message, options.aircraft,
                                              options.recording.value_or(1));
         if (table.recordings > 1 && !options.recording)
             result.notes.push_back(fmt::format(

@@ -37,22 +37,16 @@ void check_table_file(const std::optional<std::string>& file) {
     if (file) cli::table_text({{""}, {}}, *file);
 }
 
-int fit(const cli::StageCall& call, FitStageArguments arguments) {
+/// Fits the flights of one aircraft, and writes and prints the result.
+void fit_flights(const cli::StageCall& call, FitStageArguments arguments,
+                 const std::vector<mechanical::MeasuredFlight>& measured,
+                 const std::optional<mechanical::MechanicalModel>& published) {
     const auto& [options, kind, published_file] = arguments.model;
     const auto& [table_file, constants_file, curves_file] =
         std::tie(arguments.table_file, arguments.constants_file, arguments.curves_file);
     arguments.model.fit.name =
         arguments.name.value_or(call.output ? std::filesystem::path(*call.output).stem().string() : "fitted");
-    check_table_file(table_file);
-    check_table_file(constants_file);
     const bool with_motion = kind == cli::ModelKind::physical;
-    for (const auto* option : {"constants", "headwind"})
-        if (call.has(option) && !with_motion)
-            throw UsageError(fmt::format("--{} goes with --model-kind physical", option));
-    const auto published = read_published(arguments.model);
-    const auto measured =
-        cli::measured_flights(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
-                              arguments.flights, mechanical::min_samples(options.phases.order));
     std::vector<mechanical::FlightSamples> flights;
     flights.reserve(measured.size());
     for (const auto& flight : measured) flights.push_back(flight.samples);
@@ -82,6 +76,42 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
         cli::print(screen_text(cli::mean_power_table(fitted.model), screen, means) + "\n" +
                    screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));
     }
+}
+
+/// Fits each aircraft: -o MODEL.toml writes MODEL-AIRCRAFT.toml. Returns the exit code.
+int fit_each(const cli::StageCall& call, const FitStageArguments& arguments,
+             const std::vector<cli::FlightsOf<mechanical::MeasuredFlight>>& measured,
+             const std::optional<mechanical::MechanicalModel>& published) {
+    int code = cli::ok;
+    for (const auto& [aircraft, flights] : measured) {
+        auto own = call;
+        std::filesystem::path file = *call.output;
+        file.replace_filename(file.stem().string() + "-" + cli::file_name_of(aircraft) + file.extension().string());
+        own.output = file.string();
+        try {
+            fit_flights(own, arguments, flights, published);
+        } catch (const NoResultError& error) {
+            cli::warn(call, fmt::format("{} is not written: {}", *own.output, error.what()));
+            code = cli::no_answer;
+        }
+    }
+    return code;
+}
+
+int fit(const cli::StageCall& call, const FitStageArguments& arguments) {
+    check_table_file(arguments.table_file);
+    check_table_file(arguments.constants_file);
+    for (const auto* option : {"constants", "headwind"})
+        if (call.has(option) && arguments.model.kind != cli::ModelKind::physical)
+            throw UsageError(fmt::format("--{} goes with --model-kind physical", option));
+    if (arguments.flights.each && !call.output)
+        throw UsageError("--each needs -o MODEL.toml, for the models MODEL-AIRCRAFT.toml");
+    const auto published = read_published(arguments.model);
+    const auto measured =
+        cli::measured_by_aircraft(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
+                                  arguments.flights, mechanical::min_samples(arguments.model.fit.phases.order));
+    if (arguments.flights.each) return fit_each(call, arguments, measured, published);
+    fit_flights(call, arguments, measured.front().flights, published);
     return cli::ok;
 }
 
@@ -113,6 +143,8 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     options.add("intervals", arguments.with_intervals, "Table I with 95 % intervals; implies --errors");
     options.add("curves", arguments.curves_file, cli::output_file("FILE.csv"),
                 "write the curves with their band and the flights' envelope; implies --errors");
+    cli::add_each_option(options, arguments.flights, "a model for each aircraft: MODEL-AIRCRAFT.toml for -o MODEL.toml",
+                         {"name", "table", "constants", "curves", "json"});
     constexpr double max_wind_m_per_s = 100.0;
     options.add("headwind", arguments.headwind_m_per_s,
                 {.value = "M_PER_S", .min = -max_wind_m_per_s, .max = max_wind_m_per_s, .unit = "m/s"},

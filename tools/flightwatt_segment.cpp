@@ -80,11 +80,13 @@ std::size_t add_file(const cli::StageCall& call, const std::string& file, const 
 }
 
 /// The flights of several logs and folders. One that cannot be used is skipped.
-void segment_several(const cli::StageCall& call, const flight::LoadOptions& options, SegmentedFlights& segmented) {
+void segment_several(const cli::StageCall& call, flight::LoadOptions options, SegmentedFlights& segmented) {
+    const auto files = cli::files_of_aircraft(call, cli::files_of(call, options), options);
+    options.aircraft_required = false;
     std::vector<std::string> names;
     segmented.are_several = true;
     std::size_t used = 0;
-    for (const auto& file : cli::files_of(call, options)) {
+    for (const auto& file : files) {
         const auto name = cli::flight_of_file(file);
         try {
             used += add_file(call, file, flight::load_flights(std::filesystem::path(file), options), options, names,

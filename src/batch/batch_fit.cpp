@@ -29,6 +29,7 @@ Json json_of(const BatchFit& fit) {
               {"options", {{"order", fit.options.phases.order}, {"weights", to_string(fit.options.weighting)}}},
               {"exclude", fit.excluded},
               {"keep", fit.keep},
+              {"other_aircraft", fit.other_aircraft},
               {"copies", Json::array()}};
     for (const auto& copy : fit.copies)
         if (copy.has_power) json["copies"].push_back({{"flight", copy.flight}, {"of", copy.same_as}});
@@ -43,6 +44,7 @@ void read_fit_json(const Json& json, BatchFit& fit) {
     fit.options.weighting = mechanical::weighting_from(options.at("weights").get<std::string>()).value();
     fit.excluded = json.at("exclude").get<std::set<std::string>>();
     fit.keep = json.at("keep").get<std::set<std::string>>();
+    fit.other_aircraft = json.value("other_aircraft", std::set<std::string>());  // not in 0.2
     for (const auto& copy : json.at("copies")) fit.copies.push_back({copy.at("flight"), copy.at("of")});
     for (const auto phase : flight::all_phases)
         read_record(json.at("bands").at(std::string(to_string(phase))), fit.bands[phase]);
@@ -53,7 +55,7 @@ void read_fit_json(const Json& json, BatchFit& fit) {
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, {}, curve_bands(fitted, analyses)};
+    BatchFit fit{options, {}, {}, {}, {}, {}, curve_bands(fitted, analyses)};
     fit.model = std::move(fitted.model);
     return fit;
 }

@@ -38,7 +38,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     Fingerprint fingerprint;
     fingerprint.add(FLIGHTWATT_VERSION " record 10");
     fingerprint.add(log.path);
-    fingerprint.add(load.aircraft_id.value_or(""));
+    if (!file.autopilot() && !file.is_series()) fingerprint.add(load.aircraft.value_or(""));  // may be of several
     fingerprint.add(log.why_not_fitted);
     fingerprint.add(load.correct_idle_offset ? "idle offset corrected" : "");
     fingerprint.add(load.sortie ? fmt::format("sortie {}", *load.sortie) : "");
@@ -284,14 +284,23 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
     return measured;
 }
 
-std::string mixed_aircraft_reason(const BatchFlights& flights) {
-    std::vector<flight::FlightAircraft> flown;
-    for (const auto& flight : flights) {
-        const auto& record = flight.record;
-        if (!flight.selection.flights.empty())
-            flown.push_back({record.flight, record.aircraft_id, record.aircraft_name});
+std::vector<FlightAircraft> fitted_aircraft(const BatchFlights& flights) {
+    std::vector<FlightAircraft> fitted;
+    for (const auto& flight : flights)
+        if (!flight.selection.flights.empty()) fitted.push_back(aircraft_of(flight.record));
+    return fitted;
+}
+
+std::set<std::string> keep_aircraft(BatchFlights& flights, const AircraftGroup& group,
+                                    std::span<const FlightAircraft> fitted) {
+    std::set<std::string> others;
+    for (const auto& flight : fitted) others.insert(flight.flight);
+    for (const auto number : group.flights) others.erase(fitted[number].flight);
+    for (auto& flight : flights) {
+        flight.is_of_other_aircraft = others.contains(flight.record.flight);
+        if (flight.is_of_other_aircraft) flight.selection = {};
     }
-    return describe_mixed_aircraft(flown);
+    return others;
 }
 
 std::string duplicate_reason(const std::string& other) {

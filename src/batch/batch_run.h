@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,7 @@ struct BatchFlight {
     bool was_up_to_date = false;
     bool is_of_this_run = true;   ///< see LogFile
     bool log_is_missing = false;  ///< the result is of an earlier run
+    bool is_of_other_aircraft = false;  ///< than the one that is fitted
     Selection selection;
 };
 
@@ -83,8 +86,12 @@ void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight
 /// Reason for excluding a duplicate.
 std::string duplicate_reason(const std::string& other);
 
-/// Why the fitted flights are of several aircraft (describe_mixed_aircraft), or empty.
-std::string mixed_aircraft_reason(const BatchFlights& flights);
+/// The flights for a fit, to group them.
+std::vector<FlightAircraft> fitted_aircraft(const BatchFlights& flights);
+
+/// Leaves one group of fitted_aircraft for the fit. Returns the flights of the others.
+std::set<std::string> keep_aircraft(BatchFlights& flights, const AircraftGroup& group,
+                                    std::span<const FlightAircraft> fitted);
 
 /// Numbers of logs by result.
 struct Totals {
@@ -96,8 +103,8 @@ struct Totals {
 
 Totals totals_of(const BatchFlights& flights);
 
-/// A row a sortie or rejected log, of the first logs.
-TextTable flights_table(const BatchFlights& flights, std::size_t max_logs);
+/// A row a sortie or rejected log, of the first logs, with short ids of aircraft.
+TextTable flights_table(const BatchFlights& flights, std::size_t max_logs, const ShortIds& short_ids = {});
 
 /// OUT/flights.csv in chunks, as long as `flights` exists: a row a phase, and one a rejected log (docs/formats.md).
 TextWriter catalogue_csv(const BatchFlights& flights);

@@ -170,29 +170,33 @@ Fields<RecordedPhase> record_fields(const RecordedPhase*) {
 
 Fields<FlightRecord> record_fields(const FlightRecord*) {
     using R = FlightRecord;
-    return {field("flight", &R::flight, "name of the flight", csv_column{}),
-            field("log", &R::log),
-            field("fingerprint", &R::fingerprint),
-            field("results", &R::results),
-            field("accepted", &R::accepted),
-            field("is_of_other_aircraft", &R::is_of_other_aircraft),
-            field("recordings", &R::recordings),
-            field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
-            field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
-            field("payload_kg", &R::payload_kg, "payload, if the file states it", csv_column{}),
-            field("power_source", &R::power_source, "message of the power", csv_column{}),
-            field("error", &R::error, "reason of a rejected log", csv_column{}),
-            field("current_origin", &R::current_origin),
-            field("phases", &R::phases),
-            field("circuits", &R::circuits),
-            field("warnings", &R::warnings),
-            field("power_faults", &R::power_faults),
-            field("lacks_power", &R::no_power_reason),
-            field("why_not_fitted", &R::not_fitted_reason),
-            field(
-                "measured", [](const R& record) { return json_of(record.measured); }, "data of the fit")
-                .reading([](const Json& json, R& record) { read_measured(json, record.measured); }),
-            field("content", &R::content)};
+    return {
+        field("flight", &R::flight, "name of the flight", csv_column{}),
+        field("log", &R::log),
+        field("fingerprint", &R::fingerprint),
+        field("results", &R::results),
+        field("accepted", &R::accepted),
+        field("is_of_other_aircraft", &R::is_of_other_aircraft),
+        field("recordings", &R::recordings),
+        field("aircraft_id", &R::aircraft_id, "id of the aircraft in the log", csv_column{}),
+        field("aircraft_name", &R::aircraft_name, "name of the aircraft in the log", csv_column{}),
+        field("kind", &R::kind, "kind of vehicle: `fixedwing`, `rotorcraft`, `rover`; empty: unknown", csv_column{}),
+        field("pack_voltage_v", &R::pack_voltage_v, "highest voltage, less 1 % of the samples", csv_column{}),
+        field("cruise_power_w", &R::cruise_power_w, "mean power of all cruises of the log", csv_column{}),
+        field("payload_kg", &R::payload_kg, "payload, if the file states it", csv_column{}),
+        field("power_source", &R::power_source, "message of the power", csv_column{}),
+        field("error", &R::error, "reason of a rejected log", csv_column{}),
+        field("current_origin", &R::current_origin),
+        field("phases", &R::phases),
+        field("circuits", &R::circuits),
+        field("warnings", &R::warnings),
+        field("power_faults", &R::power_faults),
+        field("lacks_power", &R::no_power_reason),
+        field("why_not_fitted", &R::not_fitted_reason),
+        field(
+            "measured", [](const R& record) { return json_of(record.measured); }, "data of the fit")
+            .reading([](const Json& json, R& record) { read_measured(json, record.measured); }),
+        field("content", &R::content)};
 }
 
 FlightRecord record_of(const flight::LoadedFlight& loaded) {
@@ -201,8 +205,12 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     FlightRecord record;
     record.flight = data.flight;
     record.accepted = true;
-    record.aircraft_id = data.aircraft_id;
-    record.aircraft_name = data.aircraft_name;
+    const auto aircraft = aircraft_of(loaded);
+    record.aircraft_id = aircraft.id;
+    record.aircraft_name = aircraft.name;
+    record.kind = aircraft.kind;
+    record.pack_voltage_v = aircraft.pack_voltage_v;
+    record.cruise_power_w = aircraft.cruise_power_w;
     record.payload_kg = first_value(data.payload_kg);
     record.content = content_of(loaded.series);
     record.power_source = data.power_w.source;
@@ -220,6 +228,11 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
         }
     }
     return record;
+}
+
+FlightAircraft aircraft_of(const FlightRecord& record) {
+    return {record.flight, record.aircraft_id,    record.aircraft_name,
+            record.kind,   record.pack_voltage_v, record.cruise_power_w};
 }
 
 std::string to_json_text(const FlightRecord& record) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch/aircraft.h"
 #include "flight/flight_identity.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
@@ -43,6 +44,9 @@ struct FlightRecord {
     std::vector<std::size_t> recordings;  ///< of the file's first one: numbers of the others with a flight
     std::string aircraft_id;
     std::string aircraft_name;
+    std::string kind;  ///< these three: see FlightAircraft
+    std::optional<double> pack_voltage_v;
+    std::optional<double> cruise_power_w;
     std::optional<double> payload_kg;  ///< that the log states
     std::string power_source;
     std::string current_origin;  ///< see CurrentOrigin
@@ -61,6 +65,8 @@ Fields<FlightRecord> record_fields(const FlightRecord*);
 
 /// The record of a flight that was read and segmented.
 FlightRecord record_of(const flight::LoadedFlight& loaded);
+
+FlightAircraft aircraft_of(const FlightRecord& record);
 
 /// The record as JSON with a seal, the fingerprint of its text, and back; std::nullopt for a record of another version
 /// or one that was changed.

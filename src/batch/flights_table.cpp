@@ -45,11 +45,10 @@ std::vector<SortieRow> sortie_rows(const FlightRecord& record) {
     return rows;
 }
 
-std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& row, std::size_t sortie) {
+std::vector<std::string> cells_of(const BatchFlight& flight, const std::string& aircraft, const SortieRow& row,
+                                  std::size_t sortie) {
     const bool has_power = flight.record.no_power_reason.empty();
-    std::vector<std::string> cells{flight.record.flight,
-                                   flight::describe_aircraft(flight.record.aircraft_id, flight.record.aircraft_name),
-                                   fmt::format("{}", sortie)};
+    std::vector<std::string> cells{flight.record.flight, aircraft, fmt::format("{}", sortie)};
     for (const auto phase : flight::all_phases) {
         const auto* recorded = row.phases[phase];
         // An asterisk marks a phase that the log cuts.
@@ -67,7 +66,9 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const SortieRow& ro
     cells.insert(cells.end(), {of_power(fixed(row.energy_wh, 3)), row.has_counter ? fixed(row.counter_wh, 3) : "-",
                                fmt::format("{}", row.samples), of_power(fmt::format("{}", row.gaps)),
                                of_power(fixed(row.max_gap_s, 1)), fmt::format("{}", flight.record.warnings.size()),
-                               has_power ? fmt::format("{} of 3", fitted) : "no power"});
+                               !has_power                    ? "no power"
+                               : flight.is_of_other_aircraft ? "other aircraft"
+                                                             : fmt::format("{} of 3", fitted)});
     return cells;
 }
 
@@ -123,7 +124,7 @@ Totals totals_of(const BatchFlights& flights) {
     return totals;
 }
 
-TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
+TextTable flights_table(const BatchFlights& flights, std::size_t max_logs, const ShortIds& short_ids) {
     TextTable table;
     table.header = {"flight",     "aircraft",  "sortie",    "take-off s",   "cruise s",   "landing s",
                     "take-off W", "cruise W",  "landing W", "energy Wh",    "counter Wh", "samples",
@@ -137,8 +138,12 @@ TextTable flights_table(const BatchFlights& flights, std::size_t max_logs) {
             table.rows.push_back(std::move(row));
             continue;
         }
+        const auto& id = flight.record.aircraft_id;
+        const auto known = short_ids.find(id);
+        const auto aircraft =
+            flight::describe_aircraft(known == short_ids.end() ? id : known->second, flight.record.aircraft_name);
         const auto rows = sortie_rows(flight.record);
-        for (std::size_t s = 0; s < rows.size(); ++s) table.rows.push_back(cells_of(flight, rows[s], s + 1));
+        for (std::size_t s = 0; s < rows.size(); ++s) table.rows.push_back(cells_of(flight, aircraft, rows[s], s + 1));
     }
     return table;
 }

@@ -154,7 +154,7 @@ void copy_renamed(const std::filesystem::path& out, const MergedFlight& source, 
 
 /// Copies a flight of one recording under that name.
 BatchFlight merge_recording(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
-                            std::size_t needed_samples) {
+                            std::size_t needed_samples, const flight::LoadOptions& options) {
     const OverwriteExemption own;  // results of batches, not inputs
     const auto text = read_file(result_path(source.from, source.flight, record_suffix));
     auto record = read_verified_record(source.from, source.flight);
@@ -164,25 +164,26 @@ BatchFlight merge_recording(const std::filesystem::path& out, const MergedFlight
     } else if (!is_up_to_date) {
         copy_flight(out, source, record.accepted);
     }
-    auto merged = without_samples(std::move(record), needed_samples, {});
+    auto merged = without_samples(std::move(record), needed_samples, options);
     merged.was_up_to_date = is_up_to_date;
     return merged;
 }
 
 /// Copies the flights of a log, the first recording's under that name.
 BatchFlights merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
-                          std::size_t needed_samples) {
-    BatchFlights merged{merge_recording(out, source, name, needed_samples)};
+                          std::size_t needed_samples, const flight::LoadOptions& options) {
+    BatchFlights merged{merge_recording(out, source, name, needed_samples, options)};
     for (const auto number : std::vector(merged.front().record.recordings)) {
         const MergedFlight other{source.from, flight::recording_name(source.flight, number)};
-        merged.push_back(merge_recording(out, other, flight::recording_name(name, number), needed_samples));
+        merged.push_back(merge_recording(out, other, flight::recording_name(name, number), needed_samples, options));
     }
     return merged;
 }
 
 }  // namespace
 
-MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune) {
+MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune,
+                     const std::set<std::string>& only) {
     MergePlan plan;
     std::vector<ListedFlight> flights;
     for (const auto& batch : batches) {
@@ -192,6 +193,7 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
         }
         std::ranges::move(flights_of(batch), std::back_inserter(flights));
     }
+    if (!only.empty()) std::erase_if(flights, [&](const auto& of) { return !only.contains(of.listed.flight); });
     plan.duplicate_logs = keep_each_once(flights);
     auto& folder = plan.folder;
     folder.earlier = read_manifest(out);
@@ -210,13 +212,13 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 }
 
 BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
-                           const BatchProgress& progress) {
+                           const BatchProgress& progress, const flight::LoadOptions& options) {
     make_directories(out / temporary_folder);
     std::vector<BatchFlights> of_logs(plan.sources.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(of_logs.size(), [&](std::size_t i) {
-        of_logs[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples);
+        of_logs[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples, options);
         const std::lock_guard lock(mutex);
         ++done;
         for (const auto& flight : of_logs[i]) progress(done, of_logs.size(), flight);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,16 +24,18 @@ struct MergePlan {
     std::size_t duplicate_logs = 0;     ///< repeated logs of several batches
 };
 
-/// Joins the lists of several batches: each log once, by path, named as by find_logs, independent of the partition.
+/// Joins the lists of several batches: each log once, by path, named as by find_logs, independent of the partition. Of
+/// `only`, unless it is empty, these flights alone.
 /// `prune` drops flights in `out` that are in none of the batches. Throws UsageError if `out` is one of the batches, or
 /// has such flights without `prune`; InputError for a folder without a finished batch, and for a log that two batches
 /// read differently.
-MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune);
+MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const std::filesystem::path& out, bool prune,
+                     const std::set<std::string>& only = {});
 
 /// Copies every flight into OUT/flights after verifying its fingerprints (hard links where possible); up-to-date ones
 /// stay. In the order of the plan, without the samples, after prepare_folder. Throws InputError for a changed flight,
 /// OutputError where OUT cannot be written.
 BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
-                           const BatchProgress& progress);
+                           const BatchProgress& progress, const flight::LoadOptions& options = {});
 
 }  // namespace flightwatt::batch

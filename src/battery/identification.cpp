@@ -15,6 +15,7 @@
 #include <utility>
 
 #include <Eigen/LU>
+#include <fmt/format.h>
 
 namespace flightwatt::battery {
 namespace {
@@ -22,8 +23,8 @@ namespace {
 constexpr double looked_ahead_s = 30.0;
 constexpr double unreadable_v = 0.01;  // smaller differences between resting voltages are not significant
 
-double highest_resting_v(std::span<const DischargeRecord> records) {
-    return std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v)->resting_voltage_v;
+const DischargeRecord& fullest_of(std::span<const DischargeRecord> records) {
+    return *std::ranges::max_element(records, {}, &DischargeRecord::resting_voltage_v);
 }
 
 /// A circuit with its errors, and what each flight adds.
@@ -103,7 +104,26 @@ struct IdentificationResult {
 };
 
 int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    return options.cells.value_or(lipo_cells(highest_resting_v(records)));
+    return options.cells.value_or(lipo_cells(fullest_of(records).resting_voltage_v));
+}
+
+/// Throws UsageError with the flight that ends with the most charge missing from the pack: more than the capacity.
+[[noreturn]] void refuse_capacity(const JointCircuitFit& aligned, double capacity_ah) {
+    const auto missing_ah = [](const AlignedRecord& record) {
+        return record.initial_charge_ah + record.record->charge_ah.back();
+    };
+    const auto& deepest = *std::ranges::max_element(aligned.records, {}, missing_ah);
+    const double drawn_ah = deepest.record->charge_ah.back();
+    constexpr double significant = 0.01;  // of the charge drawn
+    const auto& flight = deepest.record->flight;
+    if (deepest.initial_charge_ah < significant * drawn_ah)
+        throw UsageError(fmt::format("--capacity is {} Ah, and {} drew {:.3f} Ah", capacity_ah, flight, drawn_ah));
+    throw UsageError(fmt::format(
+        "--capacity is {} Ah, and {:.3f} Ah are missing from the pack at the end of {}: {:.3f} Ah were drawn, and "
+        "{:.3f} Ah missing before are inferred from its voltage, by the curve of all flights (the fullest is {}); expected "
+        "more, or --exclude {} if its pack was another",
+        capacity_ah, missing_ah(deepest), flight, drawn_ah, deepest.initial_charge_ah,
+        aligned.records[aligned.reference].record->flight, flight));
 }
 
 /// Without the flights' health.
@@ -112,6 +132,7 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
     common.fitted.errors = circuit_errors(aligned);
     common.fitted.aligned = std::move(aligned);
     common.posterior = capacity_posterior(shown_curve(common.fitted), options.capacity_ah);
+    if (common.posterior.empty()) refuse_capacity(common.fitted.aligned, options.capacity_ah.value_or(0.0));
     const auto& [identification, fitted, posterior] = common;
     auto& result = common.identification;
     const auto& fit = result.fit = fitted.aligned.fit;
@@ -261,8 +282,9 @@ LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeReco
 }  // namespace
 
 BatteryIdentification identify_battery(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    if (options.cells && !records.empty()) require_possible_cells(highest_resting_v(records), *options.cells);
     if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
+    const auto& fullest = fullest_of(records);
+    if (options.cells) require_possible_cells(fullest.flight, fullest.resting_voltage_v, *options.cells);
     auto common = identify_common(fit_circuit_jointly(records, cells_of(records, options)), options);
     auto& [result, fitted, posterior] = common;
     add_health(fitted, options.with_capacities);

@@ -133,9 +133,8 @@ struct BatteryIdentification {
     std::vector<IdentifiedFlight> flights;
 };
 
-/// [V] of the fullest flight.
-inline double highest_resting_v(const BatteryIdentification& identified) {
-    return std::ranges::max(identified.flights, {}, &IdentifiedFlight::resting_voltage_v).resting_voltage_v;
+inline const IdentifiedFlight& fullest_flight(const BatteryIdentification& identified) {
+    return *std::ranges::max_element(identified.flights, {}, &IdentifiedFlight::resting_voltage_v);
 }
 
 }  // namespace flightwatt::battery

@@ -233,6 +233,8 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     check_input_count(stage, given.inputs);
     StageCall call;
     call.program = "flightwatt-" + stage.name;
+    call.command = "flightwatt " + stage.name;
+    for (int i = 1; i < argc; ++i) call.command += " " + shell_quoted(argv[i]);
     for (const auto& [name, texts] : given.options) call.given.insert(name);
     call.inputs = given.inputs;
     call.json = common.json;
@@ -361,5 +363,7 @@ void note(const StageCall& call, std::string_view message) {
     if (is_quiet) return;
     print_diagnostic(fmt::format("{}: {}\n", call.program, one_line(message)));
 }
+
+void print_lines(std::string_view lines) { print_diagnostic(std::string(lines)); }
 
 }  // namespace flightwatt::cli

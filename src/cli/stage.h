@@ -49,6 +49,7 @@ struct SkippedInput {
 /// A call of a stage. The options of the stage itself are in the variables to which they are bound.
 struct StageCall {
     std::string program;          ///< "flightwatt-fit", for diagnostics
+    std::string command;          ///< as a user types it: "flightwatt fit my -o model.toml"
     std::set<std::string> given;  ///< names of the options that the user gave
     std::vector<std::string> inputs;
     bool json = false;
@@ -121,5 +122,8 @@ Json document_schema() {
 /// A line on the standard error: "flightwatt-fit: warning: ...".
 void warn(const StageCall& call, std::string_view message);
 void note(const StageCall& call, std::string_view message);
+
+/// Lines on the standard error, as they are: a table, or commands to paste.
+void print_lines(std::string_view lines);
 
 }  // namespace flightwatt::cli

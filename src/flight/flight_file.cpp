@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -22,6 +23,8 @@
 
 namespace flightwatt::flight {
 namespace {
+
+constexpr std::size_t min_id_beginning = 4;  // characters: more than a whole id of Paparazzi has
 
 telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
@@ -97,8 +100,23 @@ std::vector<FlightSeries> read_autopilot(const FlightFile& file) {
     return recordings;
 }
 
+/// An aircraft of several in a log (LoadOptions::aircraft). Not required: a log without it is read as if none were named.
+struct AircraftRequest {
+    const std::optional<std::string>& name;
+    bool required;
+};
+
+/// Of the aircraft of a log, with their names, those that a text names: by id, else by name or the beginning of an id.
+std::vector<std::string> named_aircraft(const std::string& text, const std::map<std::string, std::string>& names) {
+    if (names.contains(text)) return {text};
+    std::vector<std::string> ids;
+    for (const auto& [id, name] : names)
+        if (name == text || (text.size() >= min_id_beginning && id.starts_with(text))) ids.push_back(id);
+    return ids;
+}
+
 /// The recordings of a file of one aircraft; none if it is another one.
-std::vector<Candidates> parse_single(const FlightFile& file, const std::optional<std::string>& aircraft_id,
+std::vector<Candidates> parse_single(const FlightFile& file, const AircraftRequest& aircraft,
                                      std::set<std::string>& ids) {
     const auto& map = file.column_map();
     std::vector<Candidates> recordings;
@@ -107,26 +125,37 @@ std::vector<Candidates> parse_single(const FlightFile& file, const std::optional
                                            : read_autopilot(file)) {
         ids.insert(series.aircraft_id);
         auto& candidates = recordings.emplace_back();
-        if (!aircraft_id || series.aircraft_id.empty() || series.aircraft_id == *aircraft_id)
+        if (!aircraft.name || !aircraft.required || series.aircraft_id.empty() || series.flight == *aircraft.name ||
+            !named_aircraft(*aircraft.name, {{series.aircraft_id, series.aircraft_name}}).empty())
             candidates.push_back(std::move(series));
     }
     return recordings;
 }
 
-std::vector<Candidates> parse_recordings(const FlightFile& file, const std::optional<std::string>& aircraft_id,
+/// The ids of the senders of a log, with the names of their aircraft.
+std::map<std::string, std::string> sender_names(const telemetry::TelemetryLog& log) {
+    std::map<std::string, std::string> names;
+    for (const auto& sender : log.senders) {
+        const auto* known = log.configuration ? &log.configuration->aircraft : nullptr;
+        names[sender.id] = known != nullptr && known->contains(sender.id) ? known->at(sender.id).name : "";
+    }
+    return names;
+}
+
+std::vector<Candidates> parse_recordings(const FlightFile& file, const AircraftRequest& aircraft,
                                          std::set<std::string>& ids) {
-    if (file.is_series() || file.autopilot()) return parse_single(file, aircraft_id, ids);
+    if (file.is_series() || file.autopilot()) return parse_single(file, aircraft, ids);
+    const bool takes_any =
+        !aircraft.name || !aircraft.required || telemetry::flight_name(file.path()) == *aircraft.name;
     std::vector<Candidates> recordings;
     for (auto& log : recordings_of(read_log(file))) {
-        std::set<std::string> own;
-        for (const auto& sender : log.senders) own.insert(sender.id);
+        const auto names = sender_names(log);
         auto& candidates = recordings.emplace_back();
-        if (!aircraft_id)
-            candidates = all_candidates(std::move(log));
-        else if (own.contains(*aircraft_id))
-            candidates.push_back(flight_series(log, *aircraft_id));
+        if (aircraft.name)
+            for (const auto& id : named_aircraft(*aircraft.name, names)) candidates.push_back(flight_series(log, id));
+        if (candidates.empty() && takes_any) candidates = all_candidates(std::move(log));
         name_unflown(file, candidates);
-        ids.merge(own);
+        for (const auto& [id, name] : names) ids.insert(id);
     }
     return recordings;
 }
@@ -229,11 +258,12 @@ bool is_recording_name(const std::string& flight) {
     return at != std::string::npos && at > 0 && parse_unsigned(flight.substr(at + 1)).has_value();
 }
 
-std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
+std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft,
+                                        bool required) {
     std::set<std::string> ids;
-    auto recordings = parse_recordings(file, aircraft_id, ids);
+    auto recordings = parse_recordings(file, {aircraft, required}, ids);
     if (std::ranges::all_of(recordings, &Candidates::empty)) {
-        throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", *aircraft_id),
+        throw OtherAircraftError({file.path().string()}, fmt::format("aircraft {} sent nothing", aircraft.value_or("")),
                                  "the log has " + short_list({ids.begin(), ids.end()}));
     }
     if (recordings.size() > telemetry::max_recordings) {

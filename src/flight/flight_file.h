@@ -69,7 +69,7 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
 /// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
 std::vector<std::string> census_of(const FlightFile& file);
 
-/// The log is valid, but has no data of the requested aircraft.
+/// The log is valid, but has no data of the requested aircraft, or of several of which one is requested.
 class OtherAircraftError : public InputError {
     using InputError::InputError;
 };
@@ -82,8 +82,10 @@ std::string recording_name(const std::string& flight, std::size_t recording);
 /// Whether a name has the form of another recording than the first.
 bool is_recording_name(const std::string& flight);
 
-/// The recordings of a file (telemetry/recordings.h), without checks. Throws InputError if the file has no telemetry,
-/// OtherAircraftError if the named aircraft sent nothing.
-std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft_id);
+/// The recordings of a file (telemetry/recordings.h), without checks: of that aircraft (LoadOptions::aircraft), else of all
+/// that sent telemetry. Throws InputError if the file has no telemetry, OtherAircraftError without that aircraft, if it
+/// is required.
+std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft,
+                                        bool required = true);
 
 }  // namespace flightwatt::flight

@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <regex>
-#include <set>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace flightwatt::flight {
 namespace {
@@ -74,26 +70,6 @@ std::string describe_aircraft(const std::string& id, const std::string& name) {
                        is_synthetic(name)   ? " (SYNTHETIC)"
                        : is_simulated(name) ? " (SIMULATED)"
                                             : "");
-}
-
-std::string describe_mixed_aircraft(std::span<const FlightAircraft> flights) {
-    std::map<std::string, std::vector<std::string>> flown;  // by aircraft
-    std::set<std::string> ids;
-    std::set<std::string> names;
-    for (const auto& [flight, id, name] : flights) {
-        flown[describe_aircraft(id, name)].push_back(flight);
-        if (!id.empty()) ids.insert(id);
-        if (!name.empty()) names.insert(name);
-    }
-    names.erase(unnamed_synthetic);  // may be any synthetic aircraft of its id
-    const auto synthetic =
-        std::ranges::count_if(flights, [](const FlightAircraft& by) { return is_synthetic(by.aircraft_name); });
-    const bool any_real = std::ranges::any_of(names, [](const auto& name) { return !is_synthetic(name); });
-    if (ids.size() < 2 && names.size() < 2 && (synthetic == 0 || !any_real)) return "";
-    std::vector<std::string> lines;
-    lines.reserve(flown.size());
-    for (const auto& [aircraft, its] : flown) lines.push_back(fmt::format("{}: {}", aircraft, fmt::join(its, ", ")));
-    return fmt::format("{}", fmt::join(lines, "; "));
 }
 
 }  // namespace flightwatt::flight

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 
 /// Identification of flights and aircraft by content rather than by file name.
@@ -28,13 +27,6 @@ struct FlightContent {
 /// series CSV. Times do not count.
 FlightContent content_of(const FlightSeries& series);
 
-/// A flight and its aircraft, as far as the file identifies them.
-struct FlightAircraft {
-    std::string flight;
-    std::string aircraft_id;    ///< empty: unknown, may be any
-    std::string aircraft_name;  ///< may be empty
-};
-
 /// Name of a synthetic aircraft without a .log.
 inline constexpr auto unnamed_synthetic = "synthetic";
 
@@ -46,9 +38,5 @@ bool is_simulated(const std::string& aircraft_name);
 
 /// "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "PX4 SITL (SIMULATED)", "unknown".
 std::string describe_aircraft(const std::string& id, const std::string& name);
-
-/// The aircraft with their flights, if these are not of one aircraft; empty if they may be. Synthetic and real flights
-/// never are.
-std::string describe_mixed_aircraft(std::span<const FlightAircraft> flights);
 
 }  // namespace flightwatt::flight

@@ -27,8 +27,8 @@ std::string shown_census(const FlightFile& file) {
 }
 
 /// The aircraft that flew. Throws InputError without power if it is required or there is no altitude either.
-FlightSeries choose_series(const FlightFile& file, Candidates candidates, bool power_required) {
-    auto series = choose_aircraft(std::move(candidates));
+FlightSeries choose_series(const FlightFile& file, Candidates candidates, bool power_required, bool of_others) {
+    auto series = choose_aircraft(std::move(candidates), of_others);
     const auto data = select_tracks(series);
     const bool needs_power = power_required || data.altitude_m.time_s.size() < min_altitudes;
     if (data.clock_restart || (needs_power && data.power_w.empty())) require_power(data, shown_census(file));
@@ -102,7 +102,8 @@ void warn_of_missing_ends(LoadedFlight& loaded) {
 }
 
 LoadedFlight load_candidates(const FlightFile& file, Candidates candidates, const LoadOptions& options) {
-    auto loaded = segment_and_check(choose_series(file, std::move(candidates), options.power_required), options);
+    auto loaded = segment_and_check(
+        choose_series(file, std::move(candidates), options.power_required, options.aircraft.has_value()), options);
     warn_of_missing_ends(loaded);  // not in segment_and_check: predict processes logs that end in the air
     return loaded;
 }
@@ -132,12 +133,12 @@ std::size_t used_recording(const std::vector<Candidates>& recordings, const Flig
     return static_cast<std::size_t>(used - recordings.begin()) + 1;
 }
 
-Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id) {
-    auto recordings = read_recordings(file, aircraft_id);
+Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft, bool required) {
+    auto recordings = read_recordings(file, aircraft, required);
     return std::move(recordings[used_recording(recordings, file, std::nullopt) - 1]);
 }
 
-FlightSeries choose_aircraft(Candidates candidates) {
+FlightSeries choose_aircraft(Candidates candidates, bool of_others) {
     if (candidates.empty()) throw OtherAircraftError({}, "the aircraft sent nothing");
     if (candidates.size() == 1) return std::move(candidates.front());
     std::vector<std::string> reasons(candidates.size());
@@ -152,10 +153,13 @@ FlightSeries choose_aircraft(Candidates candidates) {
         last = i;
     }
     if (ids.size() > 1) {
-        throw InputError(
-            {candidates.front().file},
-            fmt::format("{}: {}", any ? "several aircraft flew" : "none of its aircraft flew", short_list(ids)),
-            any ? "select one with --aircraft ID" : "");
+        const auto& file = candidates.front().file;
+        const auto found = short_list(ids);
+        if (!any) throw InputError({file}, "none of its aircraft flew: " + found);
+        const auto several = "several aircraft flew: " + found;
+        const auto* hint = "select one with --aircraft ID";
+        if (of_others) throw OtherAircraftError({file}, several, hint);
+        throw InputError({file}, several, hint);
     }
     return std::move(candidates[last]);
 }
@@ -204,7 +208,7 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
 }
 
 LoadedFile load_flights(const FlightFile& file, const LoadOptions& options) {
-    auto recordings = read_recordings(file, options.aircraft_id);
+    auto recordings = read_recordings(file, options.aircraft, options.aircraft_required);
     LoadedFile loaded{.recordings = recordings.size()};
     const bool is_only = options.recording || recordings.size() == 1;
     const auto first = is_only ? used_recording(recordings, file, options.recording) : 1;
@@ -242,9 +246,9 @@ LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& o
     return first_flight(load_flights(path, options));
 }
 
-FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft_id) {
+FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft) {
     const FlightFile file(path);
-    return choose_series(file, read_candidates(file, aircraft_id), true);
+    return choose_series(file, read_candidates(file, aircraft), true, aircraft.has_value());
 }
 
 }  // namespace flightwatt::flight

@@ -19,13 +19,16 @@ namespace flightwatt::flight {
 
 /// Options of reading, segmenting and checking a flight, common to all programs.
 struct LoadOptions {
-    std::optional<std::string> aircraft_id;  ///< one of several in the log
-    std::optional<std::size_t> sortie;       ///< from 1: the other sorties are ignored
-    SegmentationOptions segmentation;
+    /// One of several in the log: by its id, the beginning of its id, its name; or any of the log with this name.
+    std::optional<std::string> aircraft = {};
+    std::optional<std::size_t> sortie = {};  ///< from 1: the other sorties are ignored
+    SegmentationOptions segmentation = {};
     bool correct_idle_offset = false;     ///< see correct_idle_offset()
     std::set<std::string> excluded = {};  ///< flights that are not used
     std::set<std::string> keep = {};      ///< flights that are used despite power faults
     bool simulated = false;               ///< flights of a simulator (SITL, HITL) are used too
+    /// False: a log without that aircraft is read as if none were named.
+    bool aircraft_required = true;
     /// False: a log without altitude or flight is accepted, and has no phases.
     bool flight_required = true;
     /// False: a log without measured power is accepted if it has an altitude.
@@ -64,10 +67,11 @@ std::size_t used_recording(const std::vector<Candidates>& recordings, const Flig
                            const std::optional<std::size_t>& requested);
 
 /// The candidates of the used recording.
-Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft_id);
+Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft, bool required = true);
 
-/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several, or none.
-FlightSeries choose_aircraft(Candidates candidates);
+/// The aircraft that flew (has a sortie), or the only one. Throws InputError if there are several, of logs that may be
+/// `of_others` OtherAircraftError, or none.
+FlightSeries choose_aircraft(Candidates candidates, bool of_others = false);
 
 FlightAssessment assess_flight(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
@@ -94,7 +98,6 @@ LoadedFlight first_flight(LoadedFile file);
 LoadedFlight load_flight(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Only the series. Throws InputError without measured power.
-FlightSeries read_flight(const std::filesystem::path& path,
-                         const std::optional<std::string>& aircraft_id = std::nullopt);
+FlightSeries read_flight(const std::filesystem::path& path, const std::optional<std::string>& aircraft = std::nullopt);
 
 }  // namespace flightwatt::flight

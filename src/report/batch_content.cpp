@@ -83,10 +83,12 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     load.excluded = fit.excluded;
     load.keep = fit.keep;
     for (auto& [record, series, phases, damage] : batch::read_stored_flights(out)) {
+        if (fit.other_aircraft.contains(record.flight)) continue;
         const auto& rejected = damage.empty() ? record.error : damage;
         ReportFlight flight{record.flight, record.log, record.accepted ? "" : rejected, {}, {}, record.warnings, {}};
         if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
+            flight.aircraft = aircraft_of(record);
             auto selection = batch::select_for_fit(record, needed, load);
             const auto* copy = batch::original_of(record.flight, fit.copies);
             if (copy != nullptr) {
@@ -120,12 +122,12 @@ std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& c
 }
 
 std::string aircraft_mix(const BatchContent& content) {
-    std::vector<flight::FlightAircraft> flown;
-    for (const auto& flight : content.flights) {
-        if (!flight.rejected.empty() || !flight.unusable_power.empty()) continue;
-        flown.push_back({flight.name, flight.data.aircraft_id, flight.data.aircraft_name});
-    }
-    return content.fit ? "" : describe_mixed_aircraft(flown);
+    if (content.fit) return "";
+    std::vector<batch::FlightAircraft> flown;
+    for (const auto& flight : content.flights)
+        if (flight.rejected.empty() && flight.unusable_power.empty()) flown.push_back(flight.aircraft);
+    const auto groups = batch::group_aircraft(flown);
+    return groups.size() < 2 ? "" : list_aircraft(groups, flown);
 }
 
 FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie) {

@@ -22,6 +22,7 @@ struct ReportFlight {
     std::vector<std::string> warnings;
     std::vector<std::string> exclusions;  ///< parts outside of the fit, with reasons
     std::string unusable_power = {};      ///< reason for not using its power record; empty if used
+    batch::FlightAircraft aircraft = {};  ///< of an accepted flight
 };
 
 /// Use of the flight in the fit: "all", "in part" or "no".
@@ -35,7 +36,7 @@ struct BatchContent {
     std::vector<std::string> damaged;                  ///< flights whose files were changed or damaged, with reasons
 };
 
-/// The folder's flights, those with a usable power record first. Throws InputError as read_stored_flights and
+/// The folder's flights, those with a usable power record first, without those of other aircraft than its model's. Throws InputError as read_stored_flights and
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
 

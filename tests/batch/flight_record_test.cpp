@@ -25,6 +25,9 @@ FlightRecord full_record() {
     record.results = "fedcba9876543210";
     record.accepted = true;
     record.aircraft_id = "20";
+    record.kind = "fixedwing";
+    record.pack_voltage_v = 12.4;
+    record.cruise_power_w = 41.5;
     record.payload_kg = 0.25;
     record.power_source = "ENERGY.power";
     record.current_origin = "computed from throttle";

@@ -14,7 +14,6 @@ namespace {
 using test::batch;
 using test::copy_sample;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Finds and excludes them.
@@ -53,14 +52,16 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     const auto folder = test::scratch_dir();
     for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");
     auto flights = batch(folder / "in", folder / "out");
-    EXPECT_EQ(mixed_aircraft_reason(flights), "");
-    auto first = flights[0];
-    first.record.aircraft_id = "8";
-    flights[0] = first;
-    EXPECT_THAT(mixed_aircraft_reason(flights), HasSubstr("; 8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01"));
-    first.selection.flights.clear();
-    flights[0] = first;
-    EXPECT_EQ(mixed_aircraft_reason(flights), "") << "what is not fitted does not count";
+    EXPECT_EQ(group_aircraft(fitted_aircraft(flights)).size(), 1U);
+    flights[0].record.aircraft_id = "8";
+    const auto fitted = fitted_aircraft(flights);
+    const auto groups = group_aircraft(fitted);
+    EXPECT_EQ(list_aircraft(groups, fitted), "8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01; "
+                                             "7 Opterra_synthetic (SYNTHETIC): opterra_synthetic_02");
+    EXPECT_THAT(keep_aircraft(flights, groups[1], fitted), ElementsAre("opterra_synthetic_01"));
+    EXPECT_TRUE(flights[0].is_of_other_aircraft);
+    EXPECT_THAT(flights[0].selection.flights, IsEmpty());
+    EXPECT_EQ(group_aircraft(fitted_aircraft(flights)).size(), 1U) << "what is not fitted does not count";
 }
 
 }  // namespace

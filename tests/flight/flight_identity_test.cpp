@@ -32,8 +32,6 @@ TEST(LogName, IsNoDateWithoutOne) {
         EXPECT_FALSE(start_in_name(name)) << name;
 }
 
-using testing::HasSubstr;
-
 FlightSeries sample(int number) {
     return read_flight(test::source_dir() / "logs" / ("opterra_synthetic_0" + std::to_string(number) + ".data"));
 }
@@ -84,23 +82,13 @@ TEST(FlightIdentity, OfWhatDoesNotVaryIsUnknown) {
     EXPECT_EQ(fingerprint_of(series), 0U);
 }
 
-TEST(Aircraft, AreOneUnlessIdNameOrTheirBeingRealTellsThemApart) {
-    const auto mix = [](const std::vector<FlightAircraft>& flights) { return describe_mixed_aircraft(flights); };
-    EXPECT_EQ(mix({}), "");
-    EXPECT_EQ(mix({{"a", "20", "Twinstar"}, {"b", "20", "Twinstar"}, {"c", "20", ""}, {"d", "", ""}}), "");
-    EXPECT_EQ(mix({{"a", "7", "Opterra_synthetic"}, {"b", "7", unnamed_synthetic}}), "");
-    EXPECT_EQ(mix({{"a", "20", "Twinstar"}, {"b", "7", ""}, {"c", "20", "Twinstar"}}), "20 Twinstar: a, c; 7: b");
-    EXPECT_THAT(mix({{"a", "7", "Opterra"}, {"b", "7", "Twinstar"}}), HasSubstr("7 Twinstar: b"));
-    EXPECT_THAT(mix({{"a", "7", "Opterra"}, {"b", "7", unnamed_synthetic}}), HasSubstr("7 synthetic (SYNTHETIC): b"));
-    EXPECT_EQ(describe_aircraft("", ""), "unknown");
-}
-
 TEST(Aircraft, OfASimulatorAreLabelled) {
     EXPECT_TRUE(is_simulated("ArduPlane SITL"));
     EXPECT_FALSE(is_simulated("ArduPlane"));
     EXPECT_TRUE(is_simulated("Bebop NPS"));
     EXPECT_FALSE(is_simulated("NPS_Zagi")) << "NPS may be a part of a name";
     EXPECT_EQ(describe_aircraft("1", "PX4 HITL"), "1 PX4 HITL (SIMULATED)");
+    EXPECT_EQ(describe_aircraft("", ""), "unknown");
 }
 
 TEST(Aircraft, AreKnownAsSyntheticWithoutTheirLogToo) {

@@ -1,6 +1,5 @@
 #include "battery/identification/chart_match.h"
 
-#include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
@@ -14,7 +13,6 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <fmt/format.h>
 
 namespace flightwatt::battery {
 namespace {
@@ -202,10 +200,6 @@ std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std
     for (std::size_t chart = 0; chart < charts.size(); ++chart)
         for (const double capacity_ah : capacities(shown, given_ah))
             for (const auto& missing : parts) add(chart, capacity_ah, missing);
-    if (posterior.empty()) {
-        throw UsageError(fmt::format("--capacity is {} Ah, and {:.3f} Ah were drawn from the pack",
-                                     given_ah.value_or(0.0), shown.charge_ah.back()));
-    }
     constexpr double negligible = 1e-7;
     double sum = 0.0;
     for (auto& scale : posterior) scale.probability = std::exp(scale.probability - most);

@@ -52,8 +52,8 @@ struct CapacityHypothesis {
 /// The posterior on a grid (docs/methods.md), probabilities summing to 1: four points of the curve follow one of the
 /// charts with the errors above, a common one of 30 mV a cell under load, and one of 20 mV at rest. Prior: 75 % LiPo,
 /// 15 % NMC, 10 % high voltage (alone above max_charged_cell_v); drawn fraction of the capacity uniform on [1/50, 1];
-/// half of all packs begin full within 3 %, the others 0 to 90 % short. Throws UsageError if the curve exceeds the
-/// given capacity by a tenth.
+/// half of all packs begin full within 3 %, the others 0 to 90 % short. Empty if the curve exceeds the given capacity by
+/// a tenth.
 std::vector<CapacityHypothesis> capacity_posterior(const ObservedOcv& shown, std::optional<double> given_ah);
 
 Chemistry most_probable_chemistry(std::span<const CapacityHypothesis> posterior);

@@ -28,15 +28,15 @@ int lipo_cells(double resting_voltage_v) {
     return nearly_empty && resting_voltage_v <= (cells - 1) * full_high_voltage_cell_v ? std::max(1, cells - 1) : cells;
 }
 
-void require_possible_cells(double resting_voltage_v, int cells) {
+void require_possible_cells(const std::string& flight, double resting_voltage_v, int cells) {
     const double cell_v = resting_voltage_v / cells;
     if (cell_v >= min_cell_voltage_v && cell_v <= max_cell_voltage_v) return;
     const auto min_cells = std::max(1, static_cast<int>(std::ceil(resting_voltage_v / max_cell_voltage_v)));
     const auto max_cells = std::max(min_cells, static_cast<int>(resting_voltage_v / min_cell_voltage_v));
     throw UsageError(fmt::format(
-        "--cells {}: the fullest flight rests at {:.3f} V, {:.3f} V a cell, and lithium cells rest at {} to {} V: "
+        "--cells {}: {}, the fullest flight, rests at {:.3f} V, {:.3f} V a cell, and lithium cells rest at {} to {} V: "
         "expected {} to {} cells",
-        cells, resting_voltage_v, cell_v, min_cell_voltage_v, max_cell_voltage_v, min_cells, max_cells));
+        cells, flight, resting_voltage_v, cell_v, min_cell_voltage_v, max_cell_voltage_v, min_cells, max_cells));
 }
 
 std::string cells_warning(double resting_voltage_v, int cells, bool is_given) {

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace flightwatt::battery {
@@ -17,12 +18,11 @@ int lipo_cells(double resting_voltage_v);
 inline constexpr double min_cell_voltage_v = 2.5;
 inline constexpr double max_cell_voltage_v = 4.5;
 
-/// Throws UsageError where a pack with this number of cells cannot rest at this voltage.
-void require_possible_cells(double resting_voltage_v, int cells);
+/// Throws UsageError where a pack with this number of cells cannot rest at the voltage of this flight, the fullest.
+void require_possible_cells(const std::string& flight, double resting_voltage_v, int cells);
 
-/// The median and quantiles of the posterior, `measured` where the flights leave at most 5 % of it. Throws UsageError
-/// if the given capacity is less than the charge drawn, and NoResultError if none is given and the flights drew less
-/// than 3 % of the median.
+/// The median and quantiles of the posterior, `measured` where the flights leave at most 5 % of it. Throws NoResultError
+/// if no capacity is given and the flights drew less than 3 % of the median.
 Capacity estimate_capacity(double drawn_ah, std::span<const CapacityHypothesis> posterior,
                            std::optional<double> given_ah);
 

@@ -116,7 +116,10 @@ std::string describe_given_capacity(const battery::Battery& pack) {
 
 /// Warning of an implausible number of cells, or empty.
 std::string cells_warning(const battery::BatteryIdentification& identified) {
-    return battery::cells_warning(highest_resting_v(identified), identified.cells, identified.cells_are_given);
+    const auto& fullest = fullest_flight(identified);
+    const auto warning =
+        battery::cells_warning(fullest.resting_voltage_v, identified.cells, identified.cells_are_given);
+    return warning.empty() ? "" : fullest.flight + ": " + warning;
 }
 
 /// Limits of the measured open-circuit curve, a sentence each for below and above.
@@ -130,9 +133,9 @@ std::vector<std::string> curve_limits(const battery::BatteryIdentification& iden
             to_string(identified.chemistry)));
     if (identified.curve_start_depletion_ah > 0.0)
         limits.push_back(fmt::format(
-            "no flight begins full: the fullest rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
-            highest_resting_v(identified), identified.observed_max_soc_percent, identified.cells,
-            to_string(identified.chemistry),
+            "no flight begins full: the fullest, {}, rests at {:.3f} V, {:.1f} % by the usual chart of {} {} cells{}",
+            fullest_flight(identified).flight, fullest_flight(identified).resting_voltage_v,
+            identified.observed_max_soc_percent, identified.cells, to_string(identified.chemistry),
             identified.flights.size() == 1 ? "; one flight does not determine both capacity and initial charge" : ""));
     return limits;
 }

@@ -49,12 +49,18 @@ struct SeriesFile {
 std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesystem::path& out,
                                         const flight::LoadOptions& options) {
     std::vector<SeriesFile> files;
+    std::size_t others = 0;
     const auto fit = batch::read_batch_fit(out);
     auto own = options;
     if (fit) own.keep.insert(fit->keep.begin(), fit->keep.end());
     for (const auto& stored : batch::read_stored_flights(out, false)) {
         const auto& record = stored.record;
-        const auto left_out = options.keep.contains(record.flight) ? "" : why_batch_left_out(fit, record.flight);
+        const bool is_kept = options.keep.contains(record.flight);
+        if (fit && !options.aircraft && !is_kept && fit->other_aircraft.contains(record.flight)) {
+            ++others;
+            continue;
+        }
+        const auto left_out = is_kept ? "" : why_batch_left_out(fit, record.flight);
         if (!stored.damage_reason.empty()) {
             warn(call, stored.damage_reason);
         } else if (const auto why = !record.accepted   ? record.error
@@ -66,6 +72,10 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
             files.push_back({record.log, (out / "flights" / (record.flight + batch::series_suffix)).string()});
         }
     }
+    if (others > 0)
+        note(call,
+             fmt::format("{}: {} flights of other aircraft than its model's are left out; --aircraft selects them",
+                         out.string(), others));
     return files;
 }
 

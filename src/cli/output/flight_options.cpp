@@ -28,7 +28,7 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
 
 /// A flight that was read.
 struct ReadFlight {
-    flight::FlightAircraft flown;
+    batch::FlightAircraft flown;
     flight::FlightContent content;
     bool is_sound = false;
 };
@@ -61,15 +61,34 @@ std::vector<std::size_t> without_copies(const StageCall& call, const std::vector
     return numbers;
 }
 
-/// Throws InputError for flights of several aircraft.
-void refuse_mix(const std::vector<ReadFlight>& flights, const std::vector<std::size_t>& used) {
-    std::vector<flight::FlightAircraft> flown;
-    for (const auto i : used)
-        if (flights[i].is_sound) flown.push_back(flights[i].flown);
-    const auto mix = describe_mixed_aircraft(flown);
-    if (mix.empty()) return;
-    throw InputError({}, fmt::format("the flights are of several aircraft: {}", mix),
-                     "use one aircraft's alone, or accept all with --mix-aircraft");
+/// The flights to use, by aircraft; without --each all are of one. Throws InputError for several aircraft.
+std::vector<UsedFlights> by_aircraft(const StageCall& call, const FlightArguments& arguments,
+                                     const std::vector<ReadFlight>& flights, const std::vector<std::size_t>& used) {
+    std::vector<batch::FlightAircraft> flown;
+    std::vector<std::size_t> sound;
+    for (const auto i : used) {
+        if (!flights[i].is_sound) continue;
+        flown.push_back(flights[i].flown);
+        sound.push_back(i);
+    }
+    const auto groups = batch::group_aircraft(flown);
+    const auto used_of = [&](const batch::AircraftGroup& group) {
+        UsedFlights of_group{group.selector, {}};
+        for (const auto number : group.flights) of_group.numbers.push_back(sound[number]);
+        return of_group;
+    };
+    const auto& aircraft = arguments.load.aircraft;
+    if (flown.empty() || (arguments.mix_aircraft && !aircraft)) return {{"", used}};
+    if (aircraft) {
+        const auto& group = find_aircraft(*aircraft, groups, flown);
+        note_other_flights(call, groups, group, flown);
+        return {used_of(group)};
+    }
+    if (!arguments.each && groups.size() < 2) return {{"", used}};
+    if (!arguments.each) throw InputError({}, show_aircraft(call, groups, flown, arguments.has_each));
+    std::vector<UsedFlights> each;
+    for (const auto& group : certain_aircraft(call, groups, flown)) each.push_back(used_of(group));
+    return each;
 }
 
 }  // namespace
@@ -78,7 +97,9 @@ void add_flight_options(Options& options, flight::LoadOptions& load, const std::
     constexpr double max_s = 24.0 * units::seconds_per_hour;
     constexpr double bytes_per_mb = 1e6;
     options.begin_group("Flights", false, needs);
-    options.add("aircraft", load.aircraft_id, {.value = "ID"}, "the aircraft to read, where several flew");
+    options.add(
+        "aircraft", load.aircraft, {.value = "AIRCRAFT"},
+        "the aircraft to read, where several flew: its id or the beginning of that, its name, or a flight of it");
     options.add("sortie", load.sortie, {.value = "N", .min = 1}, "this sortie of the log alone, counted from 1");
     options.add("recording", load.recording, {.value = "N", .min = 1},
                 "this recording of a file alone, counted from 1, where its clock restarts");
@@ -120,6 +141,13 @@ void add_flight_options(Options& options, FlightArguments& flights) {
     add_flight_options(options, flights.load);
 }
 
+void add_each_option(Options& options, FlightArguments& flights, const std::string& description,
+                     std::vector<std::string> excludes) {
+    flights.has_each = true;
+    excludes.insert(excludes.end(), {"aircraft", "mix-aircraft"});
+    options.add("each", flights.each, description, {.excludes = std::move(excludes)});
+}
+
 void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight) {
     for (const auto& warning : flight.warnings) warn(call, fmt::format("{}: {}", file, warning));
 }
@@ -148,16 +176,17 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
 
 flight::Candidates read_recording(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
     const flight::FlightFile log(file, options);
-    auto recordings = read_recordings(log, options.aircraft_id);
+    auto recordings = read_recordings(log, options.aircraft, options.aircraft_required);
     const auto used = used_recording(recordings, log, options.recording);
     if (!options.recording) note_recording(call, file, used, recordings.size());
     return std::move(recordings[used - 1]);
 }
 
-std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArguments& arguments,
+std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArguments& arguments,
                                          const std::function<void(const std::string&, flight::LoadedFlight&)>& read) {
-    const auto& options = arguments.load;
+    auto options = arguments.load;
     const auto inputs = files_of(call, options);
+    options.aircraft_required = inputs.size() == 1;
     std::vector<std::string> flights;
     std::vector<ReadFlight> known;
     std::optional<flight::OtherAircraftError> other;
@@ -193,27 +222,29 @@ std::vector<std::size_t> for_each_flight(const StageCall& call, const FlightArgu
             flights.push_back(name);
             const auto label = label_of(file, loaded);
             warn_of(call, label, loaded);
-            known.push_back({{name, loaded.series.aircraft_id, loaded.series.aircraft_name},
-                             content_of(loaded.series),
-                             loaded.exclusion.empty()});
+            known.push_back({batch::aircraft_of(loaded), content_of(loaded.series), loaded.exclusion.empty()});
             read(label, loaded);
         }
     }
     refuse_unknown_flights(options, flights);
     if (other && known.empty()) throw *other;
     if (unusable && known.empty()) throw InputError({}, "no flight is left", "see the reasons above");
-    auto used = without_copies(call, known);
-    if (!arguments.mix_aircraft) refuse_mix(known, used);
-    return used;
+    return by_aircraft(call, arguments, known, without_copies(call, known));
 }
 
-std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
-                                                         std::size_t needed_samples) {
-    return from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
+std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
+                                                                        const FlightArguments& arguments,
+                                                                        std::size_t needed_samples) {
+    return from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
         auto measured = mechanical::extract_flights(loaded, needed_samples);
         for (const auto& exclusion : measured.exclusions) warn(call, to_string(exclusion));
         return std::move(measured.flights);
     });
+}
+
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
+                                                         std::size_t needed_samples) {
+    return std::move(measured_by_aircraft(call, arguments, needed_samples).front().flights);
 }
 
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {

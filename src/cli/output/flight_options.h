@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/output/aircraft_choice.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 #include "mechanical/measured_flight.h"
@@ -19,6 +20,8 @@ namespace flightwatt::cli {
 struct FlightArguments {
     flight::LoadOptions load;
     bool mix_aircraft = false;
+    bool has_each = false;  ///< the stage has --each
+    bool each = false;      ///< a result for each aircraft
 };
 
 /// The options of every stage that reads flights: --aircraft, --sortie, --recording, the thresholds of the segmentation,
@@ -27,6 +30,10 @@ void add_flight_options(Options& options, flight::LoadOptions& load, const std::
 
 /// The same with --mix-aircraft.
 void add_flight_options(Options& options, FlightArguments& flights);
+
+/// --each, of stages that can make a result for each aircraft.
+void add_each_option(Options& options, FlightArguments& flights, const std::string& description,
+                     std::vector<std::string> excludes = {});
 
 /// Which of many flights are used.
 struct FlightFilter {
@@ -57,28 +64,54 @@ inline constexpr auto several_flights_text =
     " FOLDER holds logs, or is\none of flightwatt batch: the flights that it accepted. A flight that cannot be used is named and skipped, and\n"
     "the exit code is then 3.";
 
-/// Loads the flights of all inputs, one at a time, to make one result of them; returns which of the calls of `read`
-/// count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
+/// Flights that count, by the number of the call that read them.
+struct UsedFlights {
+    std::string aircraft;  ///< with --each: a text that --aircraft takes
+    std::vector<std::size_t> numbers;
+};
+
+/// Loads the flights of all inputs, one at a time, to make one result of them, or one for each aircraft; returns which of
+/// the calls of `read` count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
 /// itself. The first with its .log counts, or else the first. Throws UsageError for two of
 /// one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
-/// several aircraft, or synthetic ones together with real ones, unless --mix-aircraft is given. One of several that cannot be
+/// several aircraft (batch::group_aircraft) without --aircraft, --each or --mix-aircraft. One of several that cannot be
 /// used is skipped (skip_input); where none is left, InputError is thrown.
-std::vector<std::size_t> for_each_flight(
+std::vector<UsedFlights> for_each_flight(
     const StageCall& call, const FlightArguments& arguments,
     const std::function<void(const std::string& file, flight::LoadedFlight& flight)>& read);
 
-/// What `read` makes of each flight that counts, a vector of T each, in one.
+/// What was read of the flights of one aircraft.
+template <typename T>
+struct FlightsOf {
+    std::string aircraft;  ///< see UsedFlights
+    std::vector<T> flights;
+};
+
+/// What `read` makes of each flight that counts, a vector of T each, in one for each aircraft.
 template <typename T, typename Read>
-std::vector<T> from_flights(const StageCall& call, const FlightArguments& arguments, const Read& read) {
+std::vector<FlightsOf<T>> from_aircraft(const StageCall& call, const FlightArguments& arguments, const Read& read) {
     std::vector<std::vector<T>> of_each;
     const auto counting = for_each_flight(
         call, arguments, [&](const std::string& file, auto& flight) { of_each.push_back(read(file, flight)); });
-    std::vector<T> all;
-    for (const auto number : counting) std::ranges::move(of_each[number], std::back_inserter(all));
+    std::vector<FlightsOf<T>> all;
+    for (const auto& [aircraft, numbers] : counting) {
+        auto& flights = all.emplace_back(FlightsOf<T>{aircraft, {}}).flights;
+        for (const auto number : numbers) std::ranges::move(of_each[number], std::back_inserter(flights));
+    }
     return all;
 }
 
+/// The same of stages without --each.
+template <typename T, typename Read>
+std::vector<T> from_flights(const StageCall& call, const FlightArguments& arguments, const Read& read) {
+    return std::move(from_aircraft<T>(call, arguments, read).front().flights);
+}
+
 /// The sorties that were measured with so many samples a phase, of all flights that count; warns of excluded ones.
+std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
+                                                                        const FlightArguments& arguments,
+                                                                        std::size_t needed_samples);
+/// The same of stages without --each.
 std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
                                                          std::size_t needed_samples);
 

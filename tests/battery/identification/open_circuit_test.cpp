@@ -52,17 +52,17 @@ TEST(LipoCells, AreAsManyAsTheRestingVoltageNeeds) {
 }
 
 TEST(LipoCells, AreRejectedWhereTheVoltageExcludesThem) {
-    EXPECT_NO_THROW(require_possible_cells(13.5, 3)) << "4.5 V a cell";
-    EXPECT_NO_THROW(require_possible_cells(12.5, 5)) << "2.5 V a cell";
-    EXPECT_THROW(require_possible_cells(13.51, 3), UsageError);
-    EXPECT_THROW(require_possible_cells(12.49, 5), UsageError);
+    EXPECT_NO_THROW(require_possible_cells("a", 13.5, 3)) << "4.5 V a cell";
+    EXPECT_NO_THROW(require_possible_cells("a", 12.5, 5)) << "2.5 V a cell";
+    EXPECT_THROW(require_possible_cells("a", 13.51, 3), UsageError);
+    EXPECT_THROW(require_possible_cells("a", 12.49, 5), UsageError);
     try {
-        require_possible_cells(12.498, 2);
+        require_possible_cells("a", 12.498, 2);
         FAIL() << "two cells of 6.25 V were accepted";
     } catch (const UsageError& error) {
         EXPECT_STREQ(
             error.what(),
-            "--cells 2: the fullest flight rests at 12.498 V, 6.249 V a cell, and lithium cells rest at 2.5 to 4.5 "
+            "--cells 2: a, the fullest flight, rests at 12.498 V, 6.249 V a cell, and lithium cells rest at 2.5 to 4.5 "
             "V: expected 3 to 4 cells");
     }
 }

@@ -94,8 +94,8 @@ TEST_F(BatteryTables, ComparesAGivenCapacity) {
 TEST_F(BatteryTables, WarnsOfAVoltageThatCellsDoNotHave) {
     EXPECT_THAT(remarks(), testing::Not(HasSubstr("cells rest")));
     identified_.cells = 4;
-    EXPECT_THAT(remarks(), HasSubstr("warning: 4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
-    EXPECT_THAT(provenance(identified_), HasSubstr("\n# Warning: 4 cells rest"));
+    EXPECT_THAT(remarks(), HasSubstr(": 4 cells rest at 3.09 V each before take-off, below an empty LiPo cell"));
+    EXPECT_THAT(provenance(identified_), HasSubstr(": 4 cells rest"));
 }
 
 TEST_F(BatteryTables, NamesTheFlightsAtTheHeadOfItsFile) {

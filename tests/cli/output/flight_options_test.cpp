@@ -6,6 +6,7 @@
 #include "helpers/cut_logs.h"
 #include "helpers/running_program.h"
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,6 +108,84 @@ TEST_F(FlightOptions, ChooseTheAircraft) {
     ASSERT_EQ(run("parse two.data --aircraft 8 -o eight.csv").code, ok);
     EXPECT_EQ(run("segment eight.csv --aircraft 8").code, ok);
     EXPECT_THAT(run("segment eight.csv --aircraft 7").err, HasSubstr("aircraft 7 sent nothing"));
+}
+
+/// A flight of a CSV without an aircraft.
+std::string plain_flight(double voltage_v, double power_w) {
+    std::string csv = "time_s,power_w,altitude_m,throttle_percent,voltage_v,current_a\n";
+    for (int t = 0; t < 600; ++t) {
+        const bool flies = t > 100 && t < 500;
+        const double height = flies ? std::min({100.0, 4.0 * (t - 100), 4.0 * (500 - t)}) : 0.0;
+        const double power = flies ? power_w + t % 7 : 1.0;
+        const double voltage = voltage_v - 0.001 * t - (flies ? 0.2 : 0.0);
+        csv += fmt::format("{},{},{},{},{:.3f},{:.4f}\n", t, power, height, flies ? 60 : 0, voltage, power / voltage);
+    }
+    return csv;
+}
+
+TEST_F(FlightOptions, KnowAircraftWithoutIdsByTheirPacks) {
+    write_file_atomically(folder_ / "copter.csv", plain_flight(24.8, 400.0));
+    write_file_atomically(folder_ / "wing.csv", plain_flight(12.4, 300.0));
+    for (const auto* stage : {"fit --order 0", "validate --order 0", "battery", "trends"}) {
+        const auto both = run(std::string(stage) + " copter.csv wing.csv");
+        EXPECT_EQ(both.code, input_rejected) << stage;
+        EXPECT_THAT(both.err, HasSubstr("aircraft  name  kind  cells     cruise W  flights\n"));
+        EXPECT_THAT(both.err, HasSubstr("copter    -     -     6 to 7"));
+        EXPECT_THAT(both.err, HasSubstr("the flights are of 2 aircraft; choose one with --aircraft"));
+        const auto command = fmt::format("for one of them:  flightwatt {} copter.csv wing.csv --aircraft copter\n", stage);
+        EXPECT_THAT(both.err, HasSubstr(command));
+    }
+    const auto one = run("fit --order 0 copter.csv wing.csv --aircraft copter");
+    EXPECT_EQ(one.code, ok) << one.err;
+    EXPECT_THAT(one.err, HasSubstr("1 flights of other aircraft are left out: wing"));
+    EXPECT_EQ(one.out, run("fit --order 0 copter.csv").out);
+    EXPECT_EQ(run("fit --order 0 copter.csv wing.csv --mix-aircraft").code, ok);
+    const auto none = run("fit --order 0 copter.csv wing.csv --aircraft boat");
+    EXPECT_EQ(none.code, usage_error);
+    EXPECT_THAT(none.err, HasSubstr("--aircraft boat: there is no such aircraft; there are: unknown: copter; unknown: wing"));
+}
+
+TEST_F(FlightOptions, ChooseTheAircraftOfManyLogs) {
+    const auto three = sample(1) + sample(2) + " other.data";
+    const auto log = test::source_dir() / "logs" / "opterra_synthetic_03.data";
+    auto text = telemetry::read_data_file(log);
+    boost::algorithm::replace_all(text, " 7 ", " 8 ");
+    write_file_atomically(folder_ / "other.data", text);
+    auto definitions = read_file(telemetry::find_log_file(log).value());
+    boost::algorithm::replace_all(definitions, "ac_id=\"7\"", "ac_id=\"8\"");
+    boost::algorithm::replace_all(definitions, "Opterra_synthetic", "Twinstar_synthetic");
+    write_file_atomically(folder_ / "other.log", definitions);
+    const auto expected = run("fit --order 1 other.data").out;
+    const auto phases = run("segment other.data").out;
+    for (const auto* text : {"8", "Twinstar_synthetic", "other"}) {
+        const auto aircraft = fmt::format(" --aircraft {}", text);
+        EXPECT_EQ(run("fit --order 1" + three + aircraft).out, expected) << text;
+        EXPECT_EQ(run("segment other.data" + aircraft).out, phases) << text;
+        EXPECT_THAT(run("segment" + three + aircraft).out, HasSubstr("\nother,1,cruise,")) << text;
+        EXPECT_THAT(run("segment" + three + aircraft).out, testing::Not(HasSubstr("opterra_synthetic_01"))) << text;
+        EXPECT_EQ(run("batch --order 1 -o out" + three + aircraft).code, ok) << text;
+        EXPECT_EQ(run("fit --order 1 out --name fitted").out, expected) << "the batch left out the others";
+    }
+    EXPECT_EQ(run("fit --order 1 out --name fitted --aircraft 7").out, run("fit --order 1" + sample(1) + sample(2)).out);
+    EXPECT_EQ(run("validate out --aircraft 9").code, usage_error);
+}
+
+TEST_F(FlightOptions, MakeAResultOfEachAircraft) {
+    write_file_atomically(folder_ / "copter.csv", plain_flight(24.8, 400.0));
+    write_file_atomically(folder_ / "wing.csv", plain_flight(12.4, 300.0));
+    EXPECT_EQ(run("fit --order 0 --each copter.csv wing.csv -o model.toml").code, ok);
+    EXPECT_EQ(run("batch --order 0 --each copter.csv wing.csv -o out").code, ok);
+    for (const std::string flight : {"copter", "wing"}) {
+        ASSERT_EQ(run("batch --order 0 -o alone_" + flight + " " + flight + ".csv").code, ok);
+        for (const auto* file : {"model.toml", "flights.csv", "table1.txt"})
+            EXPECT_EQ(read_file(folder_ / "out" / flight / file), read_file(folder_ / ("alone_" + flight) / file));
+        EXPECT_TRUE(std::filesystem::exists(folder_ / fmt::format("model-{}.toml", flight)));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "model.toml"));
+    EXPECT_THAT(run("batch --order 0 --each out/flights/copter.series.csv wing.csv -o json --json").out,
+                HasSubstr("\"folder\": \"json/wing\""));
+    EXPECT_EQ(run("fit --each copter.csv").code, usage_error) << "no file for the models";
+    EXPECT_EQ(run("fit --each copter.csv -o m.toml --aircraft copter").code, usage_error);
 }
 
 TEST_F(FlightOptions, ChooseTheSortie) {

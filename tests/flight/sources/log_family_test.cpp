@@ -155,7 +155,9 @@ TEST(LogFamily, OfSdlog2IsReadAsPx4) {
 TEST(LogFamily, OfAnotherAircraftIsRefused) {
     const FlightFile file(test::write_text(test::scratch_dir() / "x.ulg", test::ulog_log(5)));
     EXPECT_EQ(read_candidates(file, "0A1B").at(0).aircraft_id, "0A1B");
+    EXPECT_EQ(read_candidates(file, "x").size(), 1U) << "the flight's name";
     EXPECT_THROW(read_candidates(file, "7"), OtherAircraftError);
+    EXPECT_EQ(read_candidates(file, "7", false).size(), 1U) << "not required";
 }
 
 TEST(LogFamily, WithoutACurrentSensorHasNoPower) {
