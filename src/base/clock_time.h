@@ -22,8 +22,8 @@ class TimeColumn {
     /// `tick_s`: the unit of numbers; `is_unix`: they count from 1970, and begin at 0 too.
     explicit TimeColumn(double tick_s = 1.0, bool is_unix = false) : tick_s_(tick_s), is_unix_(is_unix) {}
 
-    /// Seconds of the log; std::nullopt for a cell that is no time, or of another kind than the first. `date`: the day of
-    /// a time without one.
+    /// Seconds of the log; std::nullopt for a cell that is no time, or of another kind than the first. `date`: the day
+    /// of a time without one.
     std::optional<double> read(std::string_view cell, std::string_view date = {});
     /// Unix time of second 0 (UTC where no zone is stated), if the first row states it.
     std::optional<double> start_clock_s() const { return start_clock_s_; }

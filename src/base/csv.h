@@ -14,7 +14,7 @@
 
 namespace flightwatt {
 
-/// How a table separates its cells and writes its numbers. Tables of other programs: see csv_dialect.h.
+/// How a table separates its cells and writes its numbers. Of tables of other programs: find_csv_header().
 struct CsvDialect {
     char separator = ',';
     bool has_decimal_comma = false;  ///< its numbers are read with a point
@@ -66,13 +66,30 @@ void for_each_csv_row(std::string_view text, const std::string& file, const CsvR
 /// The cells of one line. Throws InputError as parse_csv does.
 std::vector<std::string> csv_cells(std::string_view line, char separator);
 
+/// The header of a table of another program, and how its cells are separated.
+struct CsvHeaderLine {
+    CsvDialect dialect;
+    std::vector<std::string> columns;
+    bool has_all = false;  ///< the names that were searched
+};
+
+/// Finds line ends, preamble, header and separator: a line "sep=;", else the line of the first 200 that has most of
+/// `names` (find_columns()), else the first after `skip_lines`. A preamble before a header with none of them is no
+/// error here. Throws InputError where several separators fit.
+CsvHeaderLine find_csv_header(std::string_view text, const std::string& file, const std::vector<std::string>& names,
+                              std::optional<std::size_t> skip_lines = std::nullopt);
+
+/// Adds to the dialect of a header whether decimals are written with commas, by all cells. Throws InputError where
+/// commas may separate decimals or thousands, and where a column has commas and points.
+CsvDialect with_decimals(CsvDialect dialect, std::string_view text, const std::string& file);
+
 /// The index of a named column. Throws InputError that lists the columns there are.
 std::size_t column_index(const CsvTable& table, std::string_view name);
 
 /// A column, and the unit that its name states.
 struct CsvColumn {
     std::size_t index = 0;
-    std::string unit = {};  ///< empty if `name` is the whole name, or there is none
+    std::string unit = {};  ///< empty if the whole name was searched, or states no unit
 };
 
 /// The column of that name, else the columns that have a unit in brackets behind it: "Alt" finds "Alt(m)", "Alt [ft]".

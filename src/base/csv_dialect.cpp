@@ -1,5 +1,4 @@
-#include "base/csv_dialect.h"
-
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <algorithm>

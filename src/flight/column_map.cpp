@@ -1,15 +1,12 @@
 #include "flight/column_map.h"
 
 #include "base/atomic_file.h"
-#include "base/csv_dialect.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
 #include "flight/series_file.h"
-#include "flight/sources/log_family.h"
-#include "flight/telemetry_series.h"
 #include "telemetry/data_file.h"
-#include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <tuple>
@@ -64,6 +61,7 @@ MappedTrack read_track(const TomlTable& table) {
                          "expected one of column, columns, product, norm and value");
     track.unit_factor = unit_factor(table, track.name);
     track.factor = constant.value_or(1.0) * table.optional_number("factor").value_or(1.0);
+    if (constant) track.factor *= track.unit_factor;
     table.refuse_unknown_keys();
     return track;
 }
@@ -185,8 +183,11 @@ std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesyst
     csv = beginning_of(csv);
     const auto header = find_csv_header(csv, file.string(), {"time_s"});
     if (header.columns.empty() || header.has_all) return std::nullopt;
+    const auto occurs = [&](const std::string& name) { return csv.find(name) != std::string_view::npos; };
     for (const auto& map : shipped_maps())
-        if (!map.header.empty() && find_csv_header(csv, file.string(), map.header).has_all) return map;
+        if (!map.header.empty() && std::ranges::all_of(map.header, occurs) &&
+            find_csv_header(csv, file.string(), map.header).has_all)
+            return map;
     throw InputError({file.string(), header.dialect.lines_before + 1}, "has no column 'time_s'",
                      fmt::format("its columns are {}; a column map names their tracks: --columns MAP.toml",
                                  short_list(header.columns)));

@@ -1,7 +1,7 @@
 #include "flight/series_file.h"
 
 #include "base/atomic_file.h"
-#include "base/csv_dialect.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"

@@ -1,7 +1,11 @@
-#include "base/csv_dialect.h"
-
+#include "base/csv.h"
 #include "helpers/rejected.h"
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

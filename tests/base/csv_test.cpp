@@ -66,7 +66,7 @@ TEST(Csv, TrimsCellsAndNames) {
     EXPECT_THAT(table.columns, ElementsAre("time_s", "power_w", "note"));
     ASSERT_EQ(table.rows.size(), 2U);
     EXPECT_EQ(cell_number(table, table.rows[0], 1), 2.5);
-    EXPECT_EQ(table.rows[0].cells[1].column, 5U) << "where the cell begins";
+    EXPECT_EQ(table.rows[0].cells[1].column, 6U) << "where the cell begins";
     EXPECT_EQ(table.rows[0].cells[2].text, "a");
     EXPECT_EQ(table.rows[1].cells[2].text, " b") << "quotes keep blanks";
     EXPECT_EQ(csv_cell(" b"), "\" b\"");

@@ -14,6 +14,7 @@ struct Moment {
     double volt;
     double ampere;
     double height_m;
+    double charge_mah;  ///< drawn since the beginning
     std::string clock;  ///< HH:MM:SS, across midnight
     int day;
 };
@@ -21,6 +22,7 @@ struct Moment {
 /// A flight of 200 s, from 30 s to 230 s at 5 Hz, to 60 m and back; 16 V, 20 A in the air.
 inline std::vector<Moment> table_flight() {
     std::vector<Moment> moments;
+    double charge_mah = 0.0;
     for (int i = 0; i <= 5 * 260; ++i) {
         const double t_s = i / 5.0;
         const bool flies = t_s >= 30.0 && t_s <= 230.0;
@@ -31,13 +33,15 @@ inline std::vector<Moment> table_flight() {
         const int second = (23 * 60 + 58) * 60 + static_cast<int>(t_s);
         const auto clock =
             fmt::format("{:02}:{:02}:{:02}.{:03}", second / 3600 % 24, second / 60 % 60, second % 60, i % 5 * 200);
-        moments.push_back({t_s, 16.0 + 0.01 * (i % 3), flies ? 20.0 + 0.1 * (i % 7) : 0.3 + 0.01 * (i % 2), height_m,
-                           clock, second < 24 * 3600 ? 2 : 3});
+        const double ampere = flies ? 20.0 + 0.1 * (i % 7) : 0.3 + 0.01 * (i % 2);
+        moments.push_back(
+            {t_s, 16.0 + 0.01 * (i % 3), ampere, height_m, charge_mah, clock, second < 24 * 3600 ? 2 : 3});
+        charge_mah += ampere / 5.0 / 3.6;
     }
     return moments;
 }
 
-/// Its energy from lift-off to touchdown [Wh].
+/// Its energy from 30 to 230 s [Wh].
 inline double table_flight_wh() {
     double energy_j = 0.0;
     for (const auto& at : table_flight())

@@ -1,7 +1,7 @@
 #include "flight/sources/mapped_csv.h"
 
 #include "base/clock_time.h"
-#include "base/csv_dialect.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
@@ -245,7 +245,7 @@ class MappedRows {
     [[noreturn]] void refuse_times() const {
         throw InputError({file_}, "has fewer than two rows with a time",
                          first_bad_time_.empty() ? ""
-                                                 : fmt::format("'{}' is none: expected numbers, HH:MM:SS.mmm or "
+                                                 : fmt::format("'{}' is no time: expected numbers, HH:MM:SS.mmm or "
                                                                "YYYY-MM-DD HH:MM:SS.mmm, all in one way",
                                                                first_bad_time_));
     }

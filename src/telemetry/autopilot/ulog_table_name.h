@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 /// Names of the tables that ulog2csv writes of a log: LOG_TOPIC_INSTANCE.csv.
 namespace flightwatt::telemetry {
@@ -8,6 +10,9 @@ namespace flightwatt::telemetry {
 /// One of these is in every log of a flight; the first that a folder has represents the log.
 inline constexpr const char* representative_topics[] = {"battery_status", "vehicle_air_data", "vehicle_global_position",
                                                         "vehicle_local_position", "vehicle_gps_position"};
+
+/// Begins the line before each table of a log; topic, instance and file follow.
+inline constexpr std::string_view ulog_table_marker = "# ulog2csv ";
 
 /// Where "_0" begins in "log_battery_status_0"; npos if the name has no such end.
 inline std::size_t instance_mark(const std::string& name) {

@@ -4,6 +4,7 @@
 #include "flight/selected_track.h"
 #include "helpers/rejected.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,7 +74,7 @@ TEST(MappedCsv, MultipliesVoltageAndCurrent) {
     EXPECT_THAT(power.value, ElementsAre(DoubleEq(24.0), DoubleEq(33.0)));
     EXPECT_EQ(power.source, "u(mV) * i");
     const auto stated = electric + "[[track]]\nname = \"power_w\"\ncolumn = \"p\"\n";
-    EXPECT_THAT(power_track(read("t,u,i,p\n0,12,2,20\n1,11,3,30\n", stated)).value, ElementsAre(20.0, 30.0));
+    EXPECT_THAT(power_track(read("t,u,i,p\n0,12,2,24.5\n1,11,3,33.5\n", stated)).value, ElementsAre(24.5, 33.5));
 }
 
 TEST(MappedCsv, SplitsACellWithLatitudeAndLongitude) {
@@ -94,7 +95,7 @@ TEST(MappedCsv, ReadsClocks) {
     EXPECT_THAT(without.tracks.at(0).time_s, ElementsAre(0.0, 1.0));
     EXPECT_EQ(without.start_clock_s, std::nullopt);
     EXPECT_EQ(refusal("t,h\n10:17 AM,1\n10:18 AM,2\n", altitude),
-              "f.csv: has fewer than two rows with a time; '10:17 AM' is none: expected numbers, HH:MM:SS.mmm or "
+              "f.csv: has fewer than two rows with a time; '10:17 AM' is no time: expected numbers, HH:MM:SS.mmm or "
               "YYYY-MM-DD HH:MM:SS.mmm, all in one way");
 }
 
