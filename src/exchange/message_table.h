@@ -16,7 +16,7 @@ struct MessageCsv {
     std::size_t recordings = 1;         ///< of the file
 };
 
-/// All rows of a message of one sender in a recording, each field in the base unit of its quantity (ENERGY.voltage in V:
+/// All rows of a message of one sender in a recording, each field in its quantity's base unit (ENERGY.voltage in V:
 /// voltage_v). `sender` may be omitted if there is only one. Throws InputError for a series, for a message or recording
 /// that is not in the log (listing those that are), and for several senders.
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,

@@ -160,32 +160,17 @@ std::vector<Candidates> parse_recordings(const FlightFile& file, const AircraftR
     return recordings;
 }
 
-/// First and last time of the tracks; the former is the greater one without any.
-std::pair<double, double> span_s(const Candidates& candidates) {
-    constexpr double infinite_s = std::numeric_limits<double>::infinity();
-    std::pair<double, double> span{infinite_s, -infinite_s};
-    for (const auto& series : candidates) {
-        for (const auto& track : series.tracks) {
-            if (track.empty()) continue;
-            span.first = std::min(span.first, track.time_s.front());
-            span.second = std::max(span.second, track.time_s.back());
-        }
-    }
-    return span;
-}
-
 /// Names the recordings behind the first, and notes where they begin.
 void name_recordings(std::vector<Candidates>& recordings) {
-    double last_s = span_s(recordings.front()).second;
     for (std::size_t i = 1; i < recordings.size(); ++i) {
-        const auto [begin_s, end_s] = span_s(recordings[i]);
         for (auto& series : recordings[i]) {
+            double begin_s = std::numeric_limits<double>::infinity();
+            for (const auto& track : series.tracks)
+                if (!track.empty()) begin_s = std::min(begin_s, track.time_s.front());
             series.flight = recording_name(series.flight, i + 1);
             series.notes.push_back(
-                fmt::format("recording {} of its file: it begins at {:.1f} s, the one before ends at {:.1f} s", i + 1,
-                            begin_s, last_s));
+                fmt::format("recording {} of its file, whose clock restarts at {:.1f} s", i + 1, begin_s));
         }
-        last_s = end_s;
     }
 }
 

@@ -74,7 +74,7 @@ class OtherAircraftError : public InputError {
     using InputError::InputError;
 };
 
-/// The series of the named aircraft, else of all that sent telemetry, in one recording; none if the aircraft is not in it.
+/// The series of the named aircraft, else of all that sent telemetry, in a recording; none if it sent nothing there.
 using Candidates = std::vector<FlightSeries>;
 
 /// The flight of a recording: FLIGHT of the first, FLIGHT@2, FLIGHT@3 ... of the others.

@@ -144,8 +144,7 @@ class FrameReader {
         auto& table = table_of(log_, std::to_string(found.sender), plan, found.offset);
         table.places.push_back(found.offset + 1);
         append_row(
-            table, plan, time_s,
-            [&](const DecodePlan::Target& target) { return value_of(target); },
+            table, plan, time_s, [&](const DecodePlan::Target& target) { return value_of(target); },
             [&](std::size_t field) {
                 skips_.add({SkipReason::not_a_number, index * max_fields + field}, time_s, found.offset + 1);
             });

@@ -125,7 +125,7 @@ TelemetryLog part_of(const TelemetryLog& log, std::size_t begin, std::size_t end
     return part;
 }
 
-/// The first places of the recordings, and the end of the last: of lines without a time, those before a row belong to it.
+/// The first places of the recordings, and the end of the last. Lines without a time before a row belong to it.
 std::vector<std::size_t> bounds_of(const TelemetryLog& log, const ShowsRestart& shows_restart) {
     const auto rows = rows_in_order(log);
     const auto falls = falls_of_clock(rows);

@@ -1,7 +1,6 @@
 #include "flight/flight_file.h"
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
 #include "flight/load_flight.h"
 #include "flight/selected_track.h"
 #include "flight/series_file.h"
@@ -13,6 +12,7 @@
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,25 +24,30 @@
 namespace flightwatt::flight {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::filesystem::path put(const std::string& name, const std::string& bytes) {
-    const auto path = test::scratch_dir() / name;
-    write_file_atomically(path, bytes);
-    return path;
-}
+class Recordings : public testing::Test {
+  protected:
+    std::filesystem::path put(const std::string& name, const std::string& bytes) const {
+        write_file_atomically(folder_ / name, bytes);
+        return folder_ / name;
+    }
+    /// A log with the definitions of the first sample.
+    std::filesystem::path put_with_log(const std::string& name, const std::string& bytes) const {
+        const auto path = put(name, bytes);
+        std::filesystem::copy_file(test::sample(1, ".log"), std::filesystem::path(path).replace_extension(".log"));
+        return path;
+    }
+
+  private:
+    std::filesystem::path folder_ = test::scratch_dir();
+};
+
+using LoadFlights = Recordings;
 
 /// Two samples in one file, the second of which was recorded after a restart.
 std::string two_samples() { return read_file(test::sample(1)) + read_file(test::sample(2)); }
-
-std::filesystem::path put_two_samples() {
-    const auto path = put("two.data", two_samples());
-    std::filesystem::copy_file(test::sample(1, ".log"), path.parent_path() / "two.log",
-                               std::filesystem::copy_options::overwrite_existing);
-    return path;
-}
 
 /// Without what a file of its own does not have.
 FlightSeries comparable(FlightSeries series) {
@@ -53,19 +58,19 @@ FlightSeries comparable(FlightSeries series) {
     return series;
 }
 
-TEST(Recordings, OfADataFileAreThoseOfItsParts) {
-    const auto path = put_two_samples();
+TEST_F(Recordings, OfADataFileAreThoseOfItsParts) {
+    const auto path = put_with_log("two.data", two_samples());
     const auto recordings = read_recordings(FlightFile(path), std::nullopt);
     ASSERT_EQ(recordings.size(), 2U);
     EXPECT_EQ(recordings[0].at(0).flight, "two");
     EXPECT_EQ(recordings[1].at(0).flight, "two@2");
     EXPECT_TRUE(comparable(recordings[0].at(0)) == comparable(read_flight(test::sample(1))));
     EXPECT_TRUE(comparable(recordings[1].at(0)).tracks == read_flight(test::sample(2)).tracks);
-    EXPECT_THAT(recordings[1].at(0).notes, ElementsAre(HasSubstr("recording 2 of its file: it begins at ")));
+    EXPECT_THAT(recordings[1].at(0).notes, ElementsAre(HasSubstr("recording 2 of its file, whose clock restarts at ")));
     EXPECT_TRUE(recordings[0].at(0).notes.empty()) << "nothing of later";
 }
 
-TEST(Recordings, KnowNothingOfWhatComesLater) {
+TEST_F(Recordings, KnowNothingOfWhatComesLater) {
     const auto configuration = test::configuration_of(test::sample(1));
     const auto lines = test::lines_of(two_samples());
     const auto recordings_until = [&](std::size_t line) {
@@ -102,30 +107,31 @@ LoadOptions any_log() {
     return options;
 }
 
-std::vector<std::size_t> power_samples(const std::filesystem::path& path) {
+/// The number of samples of the first power of each recording, before any selection.
+std::vector<std::size_t> power_samples(const std::vector<Candidates>& recordings) {
     std::vector<std::size_t> samples;
-    for (const auto& flight : load_flights(path, any_log()).flights)
-        samples.push_back(power_track(flight.series).time_s.size());
+    for (const auto& candidates : recordings)
+        samples.push_back(std::ranges::find(candidates.at(0).tracks, "power_w", &Track::name)->time_s.size());
     return samples;
 }
 
-TEST(Recordings, OfOtherAutopilotsAreRead) {
-    EXPECT_THAT(power_samples(put("x.bin", test::dataflash_log(1000) + test::dataflash_log(300))),
-                ElementsAre(1000, 300));
-    EXPECT_THAT(power_samples(put("x.ulg", test::ulog_log(600) + test::ulog_log(150))), ElementsAre(600, 150));
-    const auto loaded = load_flights(put("y.ulg", test::ulog_log(600) + test::ulog_log(150)), any_log());
-    EXPECT_THAT(loaded.flights.at(0).warnings, testing::Each(testing::Not(HasSubstr("damaged"))));
+TEST_F(Recordings, OfOtherAutopilotsAreRead) {
+    const auto read = [&](const char* name, const std::string& bytes) {
+        return read_recordings(FlightFile(put(name, bytes)), std::nullopt);
+    };
+    const auto ardupilot = read("x.bin", test::dataflash_log(1000) + test::dataflash_log(300));
+    EXPECT_THAT(power_samples(ardupilot), ElementsAre(1000, 300));
+    const auto px4 = read("x.ulg", test::ulog_log(600) + test::ulog_log(150));
+    EXPECT_THAT(power_samples(px4), ElementsAre(600, 150));
+    for (const auto& candidates : px4) EXPECT_TRUE(candidates.at(0).skipped.empty()) << "its header is no damage";
 }
 
-TEST(Recordings, OfACardAreRead) {
+TEST_F(Recordings, OfACardAreRead) {
     const auto messages = telemetry::read_message_dictionary(test::sample(1, ".log"));
     const auto card = [&](int number) {
         return test::card_log(read_file(test::sample(number)), messages, test::LinkVersion::v1);
     };
-    const auto path = put("x.LOG", card(1) + card(2));
-    std::filesystem::copy_file(test::sample(1, ".log"), path.parent_path() / "x.log",
-                               std::filesystem::copy_options::overwrite_existing);
-    const auto recordings = read_recordings(FlightFile(path), std::nullopt);
+    const auto recordings = read_recordings(FlightFile(put_with_log("x.LOG", card(1) + card(2))), std::nullopt);
     ASSERT_EQ(recordings.size(), 2U);
     EXPECT_EQ(power_track(recordings[1].at(0)).value, power_track(read_flight(test::sample(2))).value);
 }
@@ -139,7 +145,7 @@ std::string rows_of(double begin_s, double shift_s) {
     return rows;
 }
 
-TEST(Recordings, OfASeriesAreReadWithAndWithoutTheirHeaders) {
+TEST_F(Recordings, OfASeriesAreReadWithAndWithoutTheirHeaders) {
     const std::string header = "time_s,power_w,altitude_m\n";
     const auto alone = read_series_csv(put("alone.csv", header + rows_of(60, 10)));
     for (const auto* between : {"", header.c_str()}) {
@@ -161,13 +167,13 @@ TEST(Recordings, OfASeriesAreReadWithAndWithoutTheirHeaders) {
                 HasSubstr(fmt::format("damaged.csv:{}: 2 cells", test::lines_of(read_file(damaged)).size())));
 }
 
-TEST(Recordings, OfASeriesDoNotHideRowsThatAreNotSorted) {
+TEST_F(Recordings, OfASeriesDoNotHideRowsThatAreNotSorted) {
     const auto path = put("x.csv", "time_s,power_w,altitude_m\n" + rows_of(50, 0) + "100,2,3\n" + "520.5,2,3\n");
     EXPECT_THAT(test::rejected([&] { read_recordings(FlightFile(path), std::nullopt); }),
                 HasSubstr("time_s = 100 does not rise from"));
 }
 
-TEST(Recordings, OfACsvByItsMapAreRead) {
+TEST_F(Recordings, OfACsvByItsMapAreRead) {
     const auto map =
         put("map.toml",
             "time = { column = \"t\", clock = \"unix\" }\n"
@@ -190,7 +196,7 @@ std::string parked() {
     return rows;
 }
 
-TEST(LoadFlights, NamesRecordingsWithoutAFlight) {
+TEST_F(LoadFlights, NamesRecordingsWithoutAFlight) {
     const auto path = put("x.csv", "time_s,power_w,altitude_m\n" + rows_of(150, 0) + parked() + rows_of(60, 10));
     const auto loaded = load_flights(path);
     ASSERT_EQ(loaded.flights.size(), 2U);
@@ -202,7 +208,7 @@ TEST(LoadFlights, NamesRecordingsWithoutAFlight) {
     EXPECT_EQ(load_flight(path).recording, 1U);
 }
 
-TEST(LoadFlights, TakesTheFirstRecordingWithAFlightOrTheOneAskedFor) {
+TEST_F(LoadFlights, TakesTheFirstRecordingWithAFlightOrTheOneAskedFor) {
     const auto path = put("x.csv", "time_s,power_w,altitude_m\n" + parked() + rows_of(60, 50));
     EXPECT_EQ(load_flight(path).recording, 2U);
     EXPECT_EQ(load_flight(path, any_log()).recording, 2U);
@@ -218,7 +224,7 @@ TEST(LoadFlights, TakesTheFirstRecordingWithAFlightOrTheOneAskedFor) {
                                HasSubstr("; recording 2: has no flight in")));
 }
 
-TEST(LoadFlights, RefusesRecordingsThatOverlap) {
+TEST_F(LoadFlights, RefusesRecordingsThatOverlap) {
     std::string rows;
     for (int i = 0; i < 300; ++i)
         rows += fmt::format("{}.5 20 ENERGY 0 12. 1. 12. 0. 0.\n", i % 2 == 0 ? 300 + i : 20 + i);

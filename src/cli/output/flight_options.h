@@ -24,7 +24,7 @@ struct FlightArguments {
     bool each = false;      ///< a result for each aircraft
 };
 
-/// The options of every stage that reads flights: --aircraft, --sortie, --recording, the thresholds of the segmentation,
+/// The options of every stage that reads flights: --aircraft, --sortie, --recording, thresholds of the segmentation,
 /// --correct-idle-offset, --exclude, --keep and --messages. `needs` is an option that has to be given with them.
 void add_flight_options(Options& options, flight::LoadOptions& load, const std::vector<std::string>& needs = {});
 

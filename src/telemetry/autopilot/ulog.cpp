@@ -132,7 +132,7 @@ class UlogReader {
         if (!is_letter(at + 2) || size == ulog_header_bytes || size > end - at) return 0;
         if (size - ulog_header_bytes > max_bytes_of(bytes_[at + 2])) return 0;
         const auto behind = at + size;
-        if (end - behind < ulog_header_bytes) return size;
+        if (end - behind < ulog_header_bytes || is_ulog(bytes_.substr(behind))) return size;
         const bool follows = is_letter(behind + 2) && wire_number<std::uint16_t>(bytes_.data() + behind) > 0;
         return follows ? size : 0;
     }
