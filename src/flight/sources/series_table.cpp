@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "base/toml_reader.h"
 #include "flight/select.h"
 #include "flight/telemetry_series.h"
 
