@@ -72,26 +72,6 @@ void remove_model(const cli::StageCall& call, const std::filesystem::path& out) 
                                 fmt::join(removed, ", "), out.string()));
 }
 
-/// The fitted flights by aircraft.
-struct FlownAircraft {
-    std::vector<batch::FlightAircraft> flights;
-    std::vector<batch::AircraftGroup> groups;
-    std::set<std::string> others = {};  ///< flights that --aircraft leaves out
-};
-
-/// Leaves the flights of --aircraft for the fit. Throws UsageError where it names none.
-FlownAircraft choose_aircraft(const cli::StageCall& call, const batch::BatchOptions& options,
-                              batch::BatchFlights& flights) {
-    FlownAircraft flown{fitted_aircraft(flights), {}};
-    flown.groups = batch::group_aircraft(flown.flights);
-    const auto& wanted = options.load.aircraft;
-    if (!wanted || flown.groups.empty()) return flown;
-    const auto& chosen = find_aircraft(*wanted, flown.groups, flown.flights);
-    cli::note_other_flights(call, flown.groups, chosen, flown.flights);
-    flown.others = keep_aircraft(flights, chosen, flown.flights);
-    return flown;
-}
-
 /// A fit with its Table I, and how its physical model came about, where one was asked for.
 struct FittedBatch {
     batch::BatchFit fit;
@@ -103,7 +83,7 @@ struct FittedBatch {
 /// fitted.
 std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArguments& arguments,
                                      const batch::BatchFlights& flights, const batch::BatchOptions& batch,
-                                     const FlownAircraft& flown, std::vector<batch::DuplicateFlight> copies,
+                                     const cli::ChosenAircraft& flown, std::vector<batch::DuplicateFlight> copies,
                                      const std::optional<mechanical::MechanicalModel>& published) {
     const auto totals = totals_of(flights);
     if (totals.accepted == 0) {
@@ -161,25 +141,10 @@ Fields<BatchFlight> record_fields(const BatchFlight*) {
 
 namespace {
 
-/// Result of --each for one aircraft.
-struct AircraftFolder {
-    std::string aircraft;
-    std::string folder;
-    std::vector<std::string> flights;
-    bool has_model = false;
-};
-
-Fields<AircraftFolder> record_fields(const AircraftFolder*) {
-    using R = AircraftFolder;
-    return {field("aircraft", &R::aircraft, "text for --aircraft"), field("folder", &R::folder, "folder of its batch"),
-            field("flights", &R::flights, "flights of its fit"),
-            field("has_model", &R::has_model, "a model was fitted")};
-}
-
 /// JSON of the stage.
 struct BatchOutput {
     const cli::FitOutput* fit = nullptr;
-    const std::vector<AircraftFolder>* each = nullptr;
+    const std::vector<cli::AircraftFolder>* each = nullptr;
     const batch::BatchFlights* logs = nullptr;
 };
 
@@ -220,7 +185,7 @@ std::optional<FittedBatch> finish_folder(const cli::StageCall& call, const Batch
                                          const std::optional<mechanical::MechanicalModel>& published) {
     const auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
-    const auto flown = choose_aircraft(call, options, flights);
+    const auto flown = cli::choose_aircraft(call, options.load.aircraft, flights);
     for (const auto& flight : flights) report_notes(call, flight);
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
@@ -250,32 +215,25 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
     const auto fitted = finish_folder(call, arguments, flights, options, published);
     if (call.json) {
         std::optional<cli::FitOutput> fit;
-        if (fitted) fit = {&fitted->fit.model, fitted->physical ? &*fitted->physical : nullptr};
+        if (fitted) fit = cli::FitOutput{&fitted->fit.model, fitted->physical ? &*fitted->physical : nullptr};
         cli::print_json(call, BatchOutput{fit ? &*fit : nullptr, nullptr, &flights});
     }
     return exit_code(call, totals_of(flights));
 }
 
 /// Makes a batch of the flights of one aircraft, from the folder of all, with its fit.
-AircraftFolder finish_one(const cli::StageCall& call, const BatchArguments& arguments,
-                          const batch::AircraftGroup& group, const FlownAircraft& flown, const batch::BatchOptions& all,
-                          const std::optional<mechanical::MechanicalModel>& published) {
-    AircraftFolder made{group.selector, (all.out / cli::file_name_of(group.selector)).string(), {}, false};
-    for (const auto number : group.flights) made.flights.push_back(flown.flights[number].flight);
+cli::AircraftFolder finish_one(const cli::StageCall& call, const BatchArguments& arguments,
+                               const batch::AircraftGroup& group, const cli::ChosenAircraft& flown,
+                               const batch::BatchOptions& all,
+                               const std::optional<mechanical::MechanicalModel>& published) {
     auto options = all;
-    options.out = made.folder;
-    make_directories(options.out);
-    const auto plan = batch::plan_merge({all.out}, options.out, true, {made.flights.begin(), made.flights.end()});
-    refuse_foreign_files(plan.folder, options.out);
-    const batch::RemoveIfEmpty unfinished{options.out / batch::temporary_folder};
-    prepare_folder(plan.folder, options.out);
-    const auto quietly = [](std::size_t, std::size_t, const auto&) {};
-    auto own = call;
-    own.output = made.folder;
+    options.out = all.out / cli::file_name_of(group.selector);
+    cli::AircraftFolder made{group.selector, options.out.string(), {}, false};
+    for (const auto number : group.flights) made.flights.push_back(flown.flights[number].flight);
+    auto flights = batch::copy_flights(all.out, {made.flights.begin(), made.flights.end()}, options);
     if (!call.json) cli::print(fmt::format("{}:\n", made.folder));
-    auto flights = merge_flights(plan, options.out, options.min_samples, quietly, options.load);
     try {
-        made.has_model = finish_folder(own, arguments, flights, options, published).has_value();
+        made.has_model = finish_folder(call, arguments, flights, options, published).has_value();
     } catch (const NoResultError& error) {
         cli::warn(call, fmt::format("{}: no model: {}", made.folder, error.what()));
     }
@@ -289,11 +247,11 @@ int finish_each(const cli::StageCall& call, const BatchArguments& arguments, bat
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
     remove_model(call, options.out);
-    const auto flown = choose_aircraft(call, options, flights);
+    const auto flown = cli::choose_aircraft(call, options.load.aircraft, flights);
     for (const auto& flight : flights)
         if (flight.selection.flights.empty()) report_notes(call, flight);
     if (flown.groups.empty()) throw InputError({}, "no flight can be fitted", "see the reasons above");
-    std::vector<AircraftFolder> made;
+    std::vector<cli::AircraftFolder> made;
     for (const auto& group : cli::certain_aircraft(call, flown.groups, flown.flights))
         made.push_back(finish_one(call, arguments, group, flown, options, published));
     if (call.json) cli::print_json(call, BatchOutput{nullptr, &made, &flights});

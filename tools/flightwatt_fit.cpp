@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -78,18 +79,20 @@ void fit_flights(const cli::StageCall& call, FitStageArguments arguments,
     }
 }
 
-/// Fits each aircraft: -o MODEL.toml writes MODEL-AIRCRAFT.toml. Returns the exit code.
+/// Fits each aircraft: -o FOLDER has FOLDER/AIRCRAFT/model.toml. Returns the exit code.
 int fit_each(const cli::StageCall& call, const FitStageArguments& arguments,
              const std::vector<cli::FlightsOf<mechanical::MeasuredFlight>>& measured,
              const std::optional<mechanical::MechanicalModel>& published) {
     int code = cli::ok;
     for (const auto& [aircraft, flights] : measured) {
+        const auto folder = std::filesystem::path(*call.output) / cli::file_name_of(aircraft);
+        make_directories(folder);
         auto own = call;
-        std::filesystem::path file = *call.output;
-        file.replace_filename(file.stem().string() + "-" + cli::file_name_of(aircraft) + file.extension().string());
-        own.output = file.string();
+        own.output = (folder / "model.toml").string();
+        auto of_aircraft = arguments;
+        of_aircraft.name = aircraft;
         try {
-            fit_flights(own, arguments, flights, published);
+            fit_flights(own, std::move(of_aircraft), flights, published);
         } catch (const NoResultError& error) {
             cli::warn(call, fmt::format("{} is not written: {}", *own.output, error.what()));
             code = cli::no_answer;
@@ -105,7 +108,7 @@ int fit(const cli::StageCall& call, const FitStageArguments& arguments) {
         if (call.has(option) && arguments.model.kind != cli::ModelKind::physical)
             throw UsageError(fmt::format("--{} goes with --model-kind physical", option));
     if (arguments.flights.each && !call.output)
-        throw UsageError("--each needs -o MODEL.toml, for the models MODEL-AIRCRAFT.toml");
+        throw UsageError("--each needs -o FOLDER, for the models FOLDER/AIRCRAFT/model.toml");
     const auto published = read_published(arguments.model);
     const auto measured =
         cli::measured_by_aircraft(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
@@ -124,7 +127,11 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
 frequency for all flights, averaged over the flights with weights. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
-    stage.next = [](const auto&) { return "flightwatt new-mission --model {} --battery PACK.toml -o mission.toml"; };
+    stage.next = [](const auto& call) {
+        return call.has("each")
+                   ? "flightwatt new-mission --model {}/AIRCRAFT/model.toml --battery PACK.toml -o mission.toml"
+                   : "flightwatt new-mission --model {} --battery PACK.toml -o mission.toml";
+    };
     stage.json_schema = cli::document_schema<cli::FitOutput>;
     stage.examples = {"flightwatt fit my -o model.toml --table table1.tex",
                       "flightwatt fit my --since 2020-07-01 --model-kind physical -o model.toml"};
@@ -143,7 +150,8 @@ as TOML; with -o it goes to the file and Table I is shown.)" +
     options.add("intervals", arguments.with_intervals, "Table I with 95 % intervals; implies --errors");
     options.add("curves", arguments.curves_file, cli::output_file("FILE.csv"),
                 "write the curves with their band and the flights' envelope; implies --errors");
-    cli::add_each_option(options, arguments.flights, "a model for each aircraft: MODEL-AIRCRAFT.toml for -o MODEL.toml",
+    cli::add_each_option(options, arguments.flights,
+                         "a model for each aircraft: FOLDER/AIRCRAFT/model.toml for -o FOLDER",
                          {"name", "table", "constants", "curves", "json"});
     constexpr double max_wind_m_per_s = 100.0;
     options.add("headwind", arguments.headwind_m_per_s,

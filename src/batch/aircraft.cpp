@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -93,12 +93,37 @@ std::vector<AircraftGroup> first_groups(std::span<const FlightAircraft> flights,
     return groups;
 }
 
-/// The numbers of the groups that a flight may belong to: of those with its id, if any has it.
+/// The numbers of the groups that a flight may belong to: of those with its id, if it has one.
 std::vector<std::size_t> fitting_groups(const FlightAircraft& flight, std::span<const AircraftGroup> groups) {
     std::vector<std::size_t> fitting;
     for (std::size_t g = 0; g < groups.size(); ++g)
         if ((flight.id.empty() || flight.id == groups[g].id) && !contradicts(flight, groups[g])) fitting.push_back(g);
     return fitting;
+}
+
+/// Flights that fit the same groups, and do not contradict each other.
+struct FittingFlights {
+    std::vector<std::size_t> fitting;  ///< several: they may be of each
+    AircraftGroup group;
+};
+
+/// What the groups are by the flights that state an id; groups without one as they are. A flight without an id that
+/// joined one of them is no evidence against others.
+std::vector<FittingFlights> divide(std::span<const FlightAircraft> flights) {
+    const auto order = by_facts(flights);
+    const auto without_id = std::ranges::find_if(order, [&](auto number) { return flights[number].id.empty(); });
+    auto groups = first_groups(flights, order);
+    std::ranges::copy(first_groups(flights, std::span(order.begin(), without_id)), groups.begin());
+    std::vector<FittingFlights> all;
+    for (const auto number : order) {
+        const auto& flight = flights[number];
+        auto fitting = fitting_groups(flight, groups);
+        const auto same = std::ranges::find_if(
+            all, [&](const auto& of) { return of.fitting == fitting && !contradicts(flight, of.group); });
+        auto& joined = same == all.end() ? all.emplace_back(FittingFlights{std::move(fitting), {}}) : *same;
+        join(flight, number, joined.group);
+    }
+    return all;
 }
 
 /// The shortest beginning of an id, from 8 characters on, that no other id has.
@@ -190,26 +215,22 @@ CellRange possible_cells(double pack_voltage_v) {
 }
 
 std::vector<AircraftGroup> group_aircraft(std::span<const FlightAircraft> flights) {
-    const auto order = by_facts(flights);
-    const auto first = first_groups(flights, order);
-    std::map<std::vector<std::size_t>, AircraftGroup> by_fitting;  // several: it may be of each
-    for (const auto number : order) {
-        auto& group = by_fitting[fitting_groups(flights[number], first)];
-        join(flights[number], number, group);
-    }
+    auto all = divide(flights);
+    const auto others = std::ranges::stable_partition(all, [](const auto& of) { return of.fitting.size() == 1; });
+    const auto known = all.size() - others.size();
     std::vector<AircraftGroup> groups;
-    for (auto& [fitting, group] : by_fitting) {
-        std::ranges::sort(group.flights);
-        if (fitting.size() == 1) groups.push_back(group);
+    for (auto& of : all) {
+        std::ranges::sort(of.group.flights);
+        groups.push_back(std::move(of.group));
     }
-    for (auto& group : groups) group.selector = selector_of(group, groups, flights);
-    const auto known = groups.size();
-    for (auto& [fitting, group] : by_fitting) {
-        if (fitting.size() == 1) continue;
-        group.selector = flights[group.flights.front()].flight;
-        for (std::size_t g = 0; g < known; ++g)
-            if (!contradicts(flights[group.flights.front()], groups[g])) group.may_be.push_back(groups[g].selector);
-        groups.push_back(std::move(group));
+    const std::span certain(groups.data(), known);
+    for (auto& group : certain) group.selector = selector_of(group, certain, flights);
+    for (auto g = known; g < groups.size(); ++g) {
+        const auto& first = flights[groups[g].flights.front()];
+        groups[g].selector = first.flight;
+        for (std::size_t c = 0; c < known; ++c)
+            if (std::ranges::find(all[g].fitting, all[c].fitting.front()) != all[g].fitting.end())
+                groups[g].may_be.push_back(groups[c].selector);
     }
     std::ranges::sort(groups, {}, [](const auto& group) { return group.flights.front(); });
     return groups;
@@ -217,12 +238,14 @@ std::vector<AircraftGroup> group_aircraft(std::span<const FlightAircraft> flight
 
 const AircraftGroup& find_aircraft(const std::string& text, std::span<const AircraftGroup> groups,
                                    std::span<const FlightAircraft> flights) {
-    auto found = groups_with(groups, [&](const auto& group) { return group.id == text; });
+    auto found = groups_with(groups, [&](const auto& group) { return !text.empty() && group.id == text; });
     const auto is_named = [&](std::size_t number) { return flights[number].flight == text; };
     for (const auto& group : groups)
         if (found.empty() && std::ranges::any_of(group.flights, is_named)) found.push_back(&group);
-    if (found.empty()) found = groups_with(groups, [&](const auto& group) { return group.name == text; });
-    if (found.empty()) found = groups_with(groups, [&](const auto& group) { return group.id.starts_with(text); });
+    if (found.empty())
+        found = groups_with(groups, [&](const auto& group) { return !text.empty() && group.name == text; });
+    if (found.empty() && text.size() >= flight::min_id_beginning)
+        found = groups_with(groups, [&](const auto& group) { return group.id.starts_with(text); });
     if (found.size() == 1) return *found.front();
     throw UsageError(fmt::format("--aircraft {}: {}; there are: {}", text,
                                  found.empty() ? "there is no such aircraft" : "it names several aircraft",
@@ -232,7 +255,7 @@ const AircraftGroup& find_aircraft(const std::string& text, std::span<const Airc
 std::string aircraft_table(std::span<const AircraftGroup> groups, std::span<const FlightAircraft> flights,
                            std::size_t width) {
     constexpr std::size_t max_name = 14;
-    constexpr std::size_t min_flights = 14;
+    constexpr std::size_t min_flights = 10;
     TextTable table{{"aircraft", "name", "kind", "cells", "cruise W"}, {}};
     for (const auto& group : groups)
         table.rows.push_back({group.selector, group.name.empty() ? "-" : clipped(group.name, max_name),

@@ -15,11 +15,11 @@ namespace flightwatt::batch {
 /// The fit of a batch, with everything that the report shows of it.
 struct BatchFit {
     mechanical::ModelFitOptions options;
-    std::set<std::string> excluded;            ///< flights of --exclude
-    std::set<std::string> keep;                ///< flights of --keep
-    std::vector<DuplicateFlight> copies = {};  ///< duplicates of other flights
+    std::set<std::string> excluded;             ///< flights of --exclude
+    std::set<std::string> keep;                 ///< flights of --keep
+    std::vector<DuplicateFlight> copies = {};   ///< duplicates of other flights
     std::set<std::string> other_aircraft = {};  ///< flights of others than the aircraft of --aircraft
-    mechanical::MechanicalModel model;         ///< with its errors
+    mechanical::MechanicalModel model;          ///< with its errors
     flight::PerPhase<mechanical::CurveBand> bands;
 };
 

@@ -32,8 +32,8 @@ struct Selection {
 struct BatchFlight {
     FlightRecord record;
     bool was_up_to_date = false;
-    bool is_of_this_run = true;   ///< see LogFile
-    bool log_is_missing = false;  ///< the result is of an earlier run
+    bool is_of_this_run = true;         ///< see LogFile
+    bool log_is_missing = false;        ///< the result is of an earlier run
     bool is_of_other_aircraft = false;  ///< than the one that is fitted
     Selection selection;
 };

@@ -27,7 +27,7 @@ struct ListedFlight {
 };
 
 /// The flights of one batch. Throws InputError for a folder without a finished batch.
-std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
+std::vector<ListedFlight> flights_of(const std::filesystem::path& batch, const std::set<std::string>& only) {
     std::error_code none;
     if (!std::filesystem::exists(batch / manifest_name, none)) {
         throw InputError({batch.string()}, "not a folder of flightwatt batch: it has no batch.json",
@@ -35,6 +35,7 @@ std::vector<ListedFlight> flights_of(const std::filesystem::path& batch) {
     }
     std::vector<ListedFlight> flights;
     for (auto& listed : read_manifest(batch)) {
+        if (!only.empty() && !only.contains(listed.flight)) continue;
         if (!std::filesystem::exists(result_path(batch, listed.flight, record_suffix), none)) {
             throw InputError({batch.string()},
                              fmt::format("this batch was not finished: {} has no record", listed.flight),
@@ -191,9 +192,8 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
         if (std::filesystem::equivalent(batch, out, none)) {
             throw UsageError(fmt::format("{} would be read and written; choose another folder with -o", out.string()));
         }
-        std::ranges::move(flights_of(batch), std::back_inserter(flights));
+        std::ranges::move(flights_of(batch, only), std::back_inserter(flights));
     }
-    if (!only.empty()) std::erase_if(flights, [&](const auto& of) { return !only.contains(of.listed.flight); });
     plan.duplicate_logs = keep_each_once(flights);
     auto& folder = plan.folder;
     folder.earlier = read_manifest(out);
@@ -224,6 +224,17 @@ BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& o
         for (const auto& flight : of_logs[i]) progress(done, of_logs.size(), flight);
     });
     return joined(std::move(of_logs));
+}
+
+BatchFlights copy_flights(const std::filesystem::path& from, const std::set<std::string>& flights,
+                          const BatchOptions& to) {
+    make_directories(to.out);
+    const auto plan = plan_merge({from}, to.out, true, flights);
+    refuse_foreign_files(plan.folder, to.out);
+    const RemoveIfEmpty unfinished{to.out / temporary_folder};
+    prepare_folder(plan.folder, to.out);
+    return merge_flights(
+        plan, to.out, to.min_samples, [](std::size_t, std::size_t, const BatchFlight&) {}, to.load);
 }
 
 }  // namespace flightwatt::batch

@@ -38,4 +38,8 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
                            const BatchProgress& progress, const flight::LoadOptions& options = {});
 
+/// Makes a batch of some flights of another batch, with its lists of files, and without a catalogue and a fit.
+BatchFlights copy_flights(const std::filesystem::path& from, const std::set<std::string>& flights,
+                          const BatchOptions& to);
+
 }  // namespace flightwatt::batch

@@ -120,8 +120,8 @@ int cells_of(std::span<const DischargeRecord> records, const IdentificationOptio
         throw UsageError(fmt::format("--capacity is {} Ah, and {} drew {:.3f} Ah", capacity_ah, flight, drawn_ah));
     throw UsageError(fmt::format(
         "--capacity is {} Ah, and {:.3f} Ah are missing from the pack at the end of {}: {:.3f} Ah were drawn, and "
-        "{:.3f} Ah missing before are inferred from its voltage, by the curve of all flights (the fullest is {}); expected "
-        "more, or --exclude {} if its pack was another",
+        "{:.3f} Ah missing before are inferred from its voltage, by the curve of all flights (the fullest is {}); "
+        "expected more, or --exclude {} if its pack was another",
         capacity_ah, missing_ah(deepest), flight, drawn_ah, deepest.initial_charge_ah,
         aligned.records[aligned.reference].record->flight, flight));
 }

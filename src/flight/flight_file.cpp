@@ -24,8 +24,6 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr std::size_t min_id_beginning = 4;  // characters: more than a whole id of Paparazzi has
-
 telemetry::TelemetryLog read_log(const FlightFile& file) {
     std::optional<telemetry::LogConfiguration> configuration;
     if (const auto& text = file.log_text()) configuration = telemetry::parse_log_configuration(*text, file.log_file());
@@ -169,7 +167,8 @@ void name_recordings(std::vector<Candidates>& recordings) {
                 if (!track.empty()) begin_s = std::min(begin_s, track.time_s.front());
             series.flight = recording_name(series.flight, i + 1);
             series.notes.push_back(
-                fmt::format("recording {} of its file, whose clock restarts at {:.1f} s", i + 1, begin_s));
+                fmt::format("recording {} of {} recordings in its file, whose clock restarts at {:.1f} s", i + 1,
+                            recordings.size(), begin_s));
         }
     }
 }

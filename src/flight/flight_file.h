@@ -66,6 +66,9 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
     return use(telemetry::BinaryLog{file.text(), file.framing().value(), file.path(), file.log_file(), &messages});
 }
 
+/// Characters of the beginning of an id that names an aircraft: more than a whole id of Paparazzi has.
+inline constexpr std::size_t min_id_beginning = 4;
+
 /// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
 std::vector<std::string> census_of(const FlightFile& file);
 

@@ -36,7 +36,8 @@ struct BatchContent {
     std::vector<std::string> damaged;                  ///< flights whose files were changed or damaged, with reasons
 };
 
-/// The folder's flights, those with a usable power record first, without those of other aircraft than its model's. Throws InputError as read_stored_flights and
+/// The folder's flights, those with a usable power record first, without those of other aircraft than its model's.
+/// Throws InputError as read_stored_flights and
 /// read_batch_fit.
 BatchContent read_batch_content(const std::filesystem::path& out);
 

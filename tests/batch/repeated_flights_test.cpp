@@ -56,8 +56,9 @@ TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     flights[0].record.aircraft_id = "8";
     const auto fitted = fitted_aircraft(flights);
     const auto groups = group_aircraft(fitted);
-    EXPECT_EQ(list_aircraft(groups, fitted), "8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01; "
-                                             "7 Opterra_synthetic (SYNTHETIC): opterra_synthetic_02");
+    EXPECT_EQ(list_aircraft(groups, fitted),
+              "8 Opterra_synthetic (SYNTHETIC): opterra_synthetic_01; "
+              "7 Opterra_synthetic (SYNTHETIC): opterra_synthetic_02");
     EXPECT_THAT(keep_aircraft(flights, groups[1], fitted), ElementsAre("opterra_synthetic_01"));
     EXPECT_TRUE(flights[0].is_of_other_aircraft);
     EXPECT_THAT(flights[0].selection.flights, IsEmpty());

@@ -35,7 +35,9 @@ std::string show_aircraft(const StageCall& call, AircraftGroups groups, FlownAir
     const auto command = call.command.size() > max_command ? std::string("the same command, with") : call.command;
     print_lines(aircraft_table(groups, flights, terminal_columns(stderr)));
     print_lines(fmt::format("for one of them:  {}{}\n", command, one));
-    if (has_each) print_lines(fmt::format("for each:         {} --each\n", command));
+    const bool is_folder = call.output && std::filesystem::path(*call.output).extension().empty();
+    if (has_each && is_folder) print_lines(fmt::format("for each:         {} --each\n", command));
+    if (has_each && !is_folder) print_lines("for each:         the same command, with --each -o FOLDER\n");
     return fmt::format(
         "the flights are of {} aircraft; choose one with --aircraft{}, or use all as if they were of one "
         "with --mix-aircraft",
@@ -54,6 +56,24 @@ void note_other_flights(const StageCall& call, AircraftGroups groups, const batc
     }
     if (!others.empty())
         note(call, fmt::format("{} flights of other aircraft are left out: {}", others.size(), short_list(others)));
+}
+
+ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::string>& aircraft,
+                               batch::BatchFlights& flights) {
+    ChosenAircraft chosen{fitted_aircraft(flights), {}};
+    chosen.groups = batch::group_aircraft(chosen.flights);
+    if (!aircraft || chosen.groups.empty()) return chosen;
+    const auto& group = find_aircraft(*aircraft, chosen.groups, chosen.flights);
+    note_other_flights(call, chosen.groups, group, chosen.flights);
+    chosen.others = keep_aircraft(flights, group, chosen.flights);
+    return chosen;
+}
+
+Fields<AircraftFolder> record_fields(const AircraftFolder*) {
+    using R = AircraftFolder;
+    return {field("aircraft", &R::aircraft, "text for --aircraft"), field("folder", &R::folder, "folder of its batch"),
+            field("flights", &R::flights, "flights of its fit"),
+            field("has_model", &R::has_model, "a model was fitted")};
 }
 
 std::vector<batch::AircraftGroup> certain_aircraft(const StageCall& call, AircraftGroups groups,

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "batch/aircraft.h"
+#include "batch/batch_run.h"
 #include "cli/stage.h"
 #include "flight/load_flight.h"
 
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +24,26 @@ std::string show_aircraft(const StageCall& call, AircraftGroups groups, FlownAir
 /// Notes the flights of other groups than the chosen one, and warns of those that may be of it.
 void note_other_flights(const StageCall& call, AircraftGroups groups, const batch::AircraftGroup& chosen,
                         FlownAircraft flights);
+
+/// The flights for the fit of a batch, by aircraft.
+struct ChosenAircraft {
+    std::vector<batch::FlightAircraft> flights;
+    std::vector<batch::AircraftGroup> groups;
+    std::set<std::string> others = {};  ///< flights that --aircraft leaves out
+};
+
+/// Leaves the flights of --aircraft for the fit. Throws UsageError where it names no aircraft, or several.
+ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::string>& aircraft,
+                               batch::BatchFlights& flights);
+
+/// Result of `batch --each` for one aircraft.
+struct AircraftFolder {
+    std::string aircraft;
+    std::string folder;
+    std::vector<std::string> flights;
+    bool has_model = false;
+};
+Fields<AircraftFolder> record_fields(const AircraftFolder*);
 
 /// The groups that are of one aircraft for certain. Warns of the flights of the others.
 std::vector<batch::AircraftGroup> certain_aircraft(const StageCall& call, AircraftGroups groups, FlownAircraft flights);

@@ -70,10 +70,10 @@ struct UsedFlights {
     std::vector<std::size_t> numbers;
 };
 
-/// Loads the flights of all inputs, one at a time, to make one result of them, or one for each aircraft; returns which of
-/// the calls of `read` count. A flight that is there under two names counts once, with a warning: it would be counted twice, and predict
-/// itself. The first with its .log counts, or else the first. Throws UsageError for two of
-/// one name, and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
+/// Loads the flights of all inputs, one at a time, to make one result of them, or one for each aircraft; returns which
+/// of the calls of `read` count. A flight that is there under two names counts once, with a warning: it would be counted
+/// twice, and predict itself. The first with its .log counts, or else the first. Throws UsageError for two of one name,
+/// and for --exclude and --keep of a flight that is not there; InputError, when all are loaded, for those of
 /// several aircraft (batch::group_aircraft) without --aircraft, --each or --mix-aircraft. One of several that cannot be
 /// used is skipped (skip_input); where none is left, InputError is thrown.
 std::vector<UsedFlights> for_each_flight(
