@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -29,14 +30,12 @@ constexpr double hole_intervals = 1.5;
 constexpr std::size_t min_intervals = 5;
 constexpr std::size_t max_intervals = 100;
 
-/// The first row that is later in the file than its time by more than 2 s: the latest time before it, and its own.
-std::optional<std::pair<double, double>> first_late_row(const telemetry::MessageTable& table) {
+bool has_late_rows(const telemetry::MessageTable& table, double later_than_s) {
     double latest_s = -std::numeric_limits<double>::infinity();
-    for (const double time_s : table.time_s) {
+    return std::ranges::any_of(table.time_s, [&](double time_s) {
         latest_s = std::max(latest_s, time_s);
-        if (latest_s - time_s > late_s) return std::pair(latest_s, time_s);
-    }
-    return std::nullopt;
+        return latest_s - time_s > later_than_s;
+    });
 }
 
 /// A row seen before in the file, and the earliest time that shows it to be late (infinite: none).
@@ -76,6 +75,47 @@ bool is_overlap(const telemetry::MessageTable& table, std::size_t row, const See
     return above->first - before_s.front() < hole_intervals * *low;
 }
 
+/// Several devices report at one time and in any order.
+bool may_overlap(const telemetry::MessageTable& table) {
+    return table.message != "ESC" && table.message != "POWER_DEVICE";
+}
+
+/// A clock that was set back, and the rows behind it, in order, between times that rows before them have already.
+struct ClockStep {
+    double from_s = 0.0;
+    double to_s = 0.0;
+    std::size_t rows = 0;
+};
+
+/// The step with most such rows. Lines out of order fill holes instead, and repeated lines are equal.
+ClockStep largest_step(const telemetry::MessageTable& table) {
+    const auto& times_s = table.time_s;
+    auto intervals_s = times_s;
+    std::ranges::sort(intervals_s);
+    std::adjacent_difference(intervals_s.begin(), intervals_s.end(), intervals_s.begin());
+    const auto low = intervals_s.begin() + static_cast<std::ptrdiff_t>(intervals_s.size() / 10);
+    std::nth_element(intervals_s.begin(), low, intervals_s.end());
+    const double close_s = hole_intervals * *low;
+    ClockStep largest;
+    ClockStep step;
+    std::map<double, std::size_t> seen;
+    bool is_behind = false;
+    for (std::size_t row = 0; row < times_s.size(); ++row) {
+        const double time_s = times_s[row];
+        const double latest_s = seen.empty() ? time_s : seen.rbegin()->first;
+        is_behind = is_behind && time_s >= times_s[row - 1] && time_s <= step.from_s;
+        if (!is_behind && latest_s - time_s > late_s) step = {latest_s, time_s, 0}, is_behind = true;
+        const auto above = seen.lower_bound(time_s);
+        if (is_behind && above->first == time_s)
+            step.rows += differ(table, row, above->second) ? 1 : 0;
+        else if (is_behind && above != seen.begin() && above->first - std::prev(above)->first < close_s)
+            ++step.rows;
+        if (step.rows > largest.rows) largest = step;
+        seen.emplace(time_s, row);
+    }
+    return largest;
+}
+
 /// Restarts and overlapping rows of one message.
 struct ClockFaults {
     std::optional<ClockRestart> restart;
@@ -83,9 +123,7 @@ struct ClockFaults {
 };
 
 void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
-    if (!first_late_row(table)) return;
-    // Several devices report at one time and in any order.
-    const bool may_overlap = table.message != "ESC" && table.message != "POWER_DEVICE";
+    if (!has_late_rows(table, late_s)) return;
     SeenRows seen;
     for (std::size_t row = 0; row < table.time_s.size(); ++row) {
         const double time_s = table.time_s[row];
@@ -98,7 +136,7 @@ void add_faults(const telemetry::MessageTable& table, ClockFaults& faults) {
         if (std::isfinite(restart_from_s) && (!restart || restart_from_s < restart->visible_from_s))
             restart = {restart_from_s, seen.rbegin()->first, time_s, table.message};
         const double known_s = shows(late_s);
-        if (may_overlap && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
+        if (may_overlap(table) && std::isfinite(known_s) && is_overlap(table, row, seen, known_s))
             faults.overlaps.push_back({known_s, seen.rbegin()->first, time_s, table.message});
         seen.emplace(time_s, SeenRow{row, known_s});
     }
@@ -259,15 +297,19 @@ std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sende
 }
 
 std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender) {
-    ClockFaults faults;
-    for (const auto& table : sender.tables) add_faults(table, faults);
-    auto& overlaps = faults.overlaps;
-    if (overlaps.size() < few_late_rows) return std::nullopt;
-    std::ranges::sort(overlaps, {}, &ClockRestart::visible_from_s);
-    const auto [from_s, to_s] = first_late_row(*sender.table(overlaps.front().message)).value();
+    ClockStep largest;
+    std::size_t rows = 0;
+    for (const auto& table : sender.tables) {
+        if (!may_overlap(table) || !has_late_rows(table, late_s)) continue;
+        const auto step = largest_step(table);
+        rows += step.rows;
+        if (step.rows > largest.rows) largest = step;
+    }
+    if (rows < few_late_rows) return std::nullopt;
     return telemetry::SkippedLines{
-        fmt::format("the clock is set back by {:.1f} s at {:.1f} s, so that times occur twice", from_s - to_s, from_s),
-        {{overlaps[few_late_rows - 1].visible_from_s, overlaps.size(), 0}}};
+        fmt::format("the clock is set back by {:.1f} s at {:.1f} s, so that times occur twice",
+                    largest.from_s - largest.to_s, largest.from_s),
+        {{largest.from_s, rows, 0}}};
 }
 
 std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log) {

@@ -20,7 +20,8 @@ constexpr std::size_t header_bytes = 3;
 constexpr std::uint8_t format_type = 128;
 constexpr std::size_t format_bytes = 89;
 constexpr double ms_per_s = 1e3;
-constexpr std::string_view clock_of_sdlog2 = "TIME";  ///< of the messages that follow
+constexpr std::string_view clock_of_sdlog2 = "TIME";
+constexpr std::string_view clock_of_oldest = "GPS";  // before 3.1
 
 /// Type of a field by its letter; a text has many characters.
 struct FieldLetters {
@@ -78,13 +79,14 @@ DataflashFormat make_format(std::string_view name, std::size_t length, std::stri
     }
     format.is_usable = is_known && offset == length && columns.empty();
     constexpr double us_per_s = 1e6;
-    format.is_clock = name == clock_of_sdlog2;
-    for (const auto& [column, ticks] : {std::pair{format.is_clock ? "StartTime" : "TimeUS", us_per_s},
+    const bool is_sdlog2 = name == clock_of_sdlog2;
+    for (const auto& [column, ticks] : {std::pair{is_sdlog2 ? "StartTime" : "TimeUS", us_per_s},
                                         {name.starts_with("GPS") ? "T" : "TimeMS", ms_per_s}}) {
         if (format.clock) break;
         format.clock = format.index_of(column);
         format.ticks_per_s = ticks;
     }
+    format.is_clock = is_sdlog2 || (name == clock_of_oldest && !format.clock);
     return format;
 }
 
@@ -215,7 +217,7 @@ class DataflashReader {
     std::optional<double> time_of(const DataflashMessage& message) const {
         constexpr double week_s = 604'800.0;
         if (message.format.clock) return message.number(*message.format.clock) / message.format.ticks_per_s;
-        if (has_boot_clock_ || message.format.name != "GPS") return std::nullopt;
+        if (has_boot_clock_ || message.format.name != clock_of_oldest) return std::nullopt;
         for (const auto* field : {"TimeMS", "Time"}) {
             const double week_ms = message.number(field);
             if (!(week_ms > 0.0)) continue;

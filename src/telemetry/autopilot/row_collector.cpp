@@ -187,6 +187,8 @@ AutopilotLog RowCollector::take(bool as_lines) {
     if (!has_times_ && early_ > 0)
         throw InputError({file_.string()}, fmt::format("no message has a time, also none of {} that are used", early_),
                          "in logs of ArduPilot before 3.1 only GPS has one: the aircraft had no GPS, or no fix");
+    if (std::isnan(last_s_) && early_ > 0)
+        skips_.add({SkipReason::no_time, without_time}, after_last_s, first_early_ + 1, early_);
     for (std::size_t t = 0; t < tables.size(); ++t) {
         std::size_t column = 0;
         std::erase_if(tables[t].columns, [&](const Column&) { return !is_bound_[t][column++]; });
