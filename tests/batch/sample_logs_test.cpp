@@ -137,7 +137,8 @@ TEST(SampleLogs, OfSeveralAircraftAskWhich) {
               "opterra_synthetic_01.data: several aircraft flew: 7, 8; select one with --aircraft ID");
     const auto seventh = flight::read_flight(both, "7");
     const auto alone = flight::read_flight(test::sample(1));
-    EXPECT_EQ(flight::phases_csv(seventh, flight::segment(seventh)), flight::phases_csv(alone, flight::segment(alone)));
+    EXPECT_EQ(phases_csv(select_tracks(seventh), segment(select_tracks(seventh))),
+              phases_csv(select_tracks(alone), segment(select_tracks(alone))));
     EXPECT_EQ(flight::power_track(flight::read_flight(both, "8")).value,
               flight::power_track(flight::read_flight(test::sample(2))).value);
 }

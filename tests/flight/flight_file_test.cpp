@@ -2,7 +2,6 @@
 
 #include "base/atomic_file.h"
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
 #include "helpers/autopilot_logs.h"
@@ -11,6 +10,7 @@
 #include "helpers/flown_points.h"
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
+#include "helpers/selected_tracks.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "flight/sources/mapped_csv.h"
 
 #include "flight/load_flight.h"
-#include "flight/selected_track.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
