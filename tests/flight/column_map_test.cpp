@@ -47,7 +47,8 @@ TEST(ColumnMap, OfTheBenchmarkIsRecognisedByItsHeader) {
 
 TEST(ColumnMap, HasUnitsFactorsAndClocks) {
     const auto map = parse_column_map(small_map, "map.toml");
-    const auto series = parse_mapped_csv("t,u,i,down\n2000,10,5,-300\n1000,10,4,0\n3000,,x,1\n,1,1,1\n", "f.csv", map);
+    const auto series =
+        parse_mapped_csv("t,u,i,down\n2000,10,5,-300\n1000,10,4,0\n3000,,x,1\n,1,1,1\n", "f.csv", map).at(0);
     EXPECT_EQ(series.start_clock_s, 2.0);
     ASSERT_EQ(series.tracks.size(), 2U);
     EXPECT_EQ(series.tracks[0].name, "altitude_m");
@@ -63,7 +64,7 @@ TEST(ColumnMap, StatesThePayload) {
     const auto payload_of = [](const std::string& track) {
         const auto map = parse_column_map(small_map + "[[track]]\nname = \"payload_kg\"\n" + track, "map.toml");
         return first_value(
-            select_tracks(parse_mapped_csv("t,u,i,down,load\n2000,10,5,-300,\n3000,10,4,0,250\n", "f.csv", map))
+            select_tracks(parse_mapped_csv("t,u,i,down,load\n2000,10,5,-300,\n3000,10,4,0,250\n", "f.csv", map).at(0))
                 .payload_kg);
     };
     EXPECT_EQ(payload_of("value = 0.5\n"), 0.5);

@@ -68,8 +68,12 @@ std::string why_none(const Evidence& evidence) {
     series.tracks = {track_of("altitude_m", "ESTIMATOR.z", evidence.altitude_m, evidence.altitude_interval_s)};
     series.tracks.insert(series.tracks.end(), evidence.tracks.begin(), evidence.tracks.end());
     const auto tracks = select_tracks(series);
+    grid.has_altitude.assign(grid.size(), true);
     Activity activity{{0, grid.size()}, {0, grid.size()}, std::nullopt, std::nullopt};
-    if (evidence.is_from_ground) activity.ground_before_m = activity.ground_after_m = 0.0;
+    if (evidence.is_from_ground) {
+        activity.moving = {1, grid.size() - 1};
+        activity.ground_before = activity.ground_after = GroundLevel{};
+    }
     const SegmentationOptions options;
     return no_flight_reason({tracks, grid, activity, heights, options});
 }
