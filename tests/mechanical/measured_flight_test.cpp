@@ -53,7 +53,7 @@ Selection select(const std::vector<flight::Sortie>& sorties) {
     flight::FlightPhases phases;
     phases.sorties = sorties;
     for (std::size_t s = 0; s < sorties.size(); ++s) phases.sorties[s].number = s + 1;
-    auto measured = extract_flights(series_of_300_s(), phases, needed);
+    auto measured = extract_flights(select_tracks(series_of_300_s()), phases, needed);
     Selection selection{{}, std::move(measured.exclusions)};
     for (auto& flight : measured.flights) selection.flights.push_back(std::move(flight.samples));
     return selection;
