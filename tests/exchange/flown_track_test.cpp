@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/test_paths.h"
 
 #include <gmock/gmock.h>
@@ -56,7 +57,7 @@ std::string rejection_of(const flight::FlightSeries& series) {
 }
 
 TEST(FlownTrack, HasEachPositionWithAltitudePowerAndPhase) {
-    const auto track = flown_track(places(), two_phases());
+    const auto track = flown_track(select_tracks(places()), two_phases());
     ASSERT_EQ(track.points.size(), 5U);
     const auto& point = track.points[2];
     EXPECT_DOUBLE_EQ(point.longitude_deg, 1.2);
@@ -93,7 +94,7 @@ TEST(FlownTrack, RefusesALogWithoutPositionsAndSaysWhy) {
 }
 
 TEST(ColouredParts, FollowThePhasesAndShareTheirEnds) {
-    const auto parts = phase_segments(flown_track(places(), two_phases()));
+    const auto parts = phase_segments(flown_track(select_tracks(places()), two_phases()));
     ASSERT_EQ(parts.size(), 3U);
     EXPECT_EQ(parts[0].name, "ground");
     EXPECT_EQ(parts[1].name, "takeoff");
@@ -119,7 +120,7 @@ TEST(ColouredParts, HaveTheirMeanPowerOverTime) {
 }
 
 TEST(ColouredParts, DoNotCrossTheMeridianOf180Degrees) {
-    const auto parts = phase_segments(flown_track(places({179.8, 179.9, -179.9, -179.8, -179.7}), {}));
+    const auto parts = phase_segments(flown_track(select_tracks(places({179.8, 179.9, -179.9, -179.8, -179.7})), {}));
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0].last, 1U);
     EXPECT_EQ(parts[1].first, 2U);

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
 
@@ -55,7 +56,7 @@ inline live::Prediction predicted(const std::filesystem::path& log, double until
                                   const live::PredictionInput& basis) {
     const auto series = truncate_series(flight::read_flight(log), until_s);
     live::Diagnostics remarks;
-    return predict_flight(basis, mechanical::progress_at(series, until_s), series, remarks);
+    return predict_flight(basis, mechanical::progress_at(series, until_s), select_tracks(series), remarks);
 }
 
 inline void expect_same(const live::Prediction& watched, const live::Prediction& expected) {

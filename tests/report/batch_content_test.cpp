@@ -3,6 +3,7 @@
 #include "report/batch_content.h"
 
 #include "base/error.h"
+#include "flight/select.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
@@ -57,10 +58,12 @@ flight::Track track(const std::string& name, std::vector<double> time_s, std::ve
 ReportFlight square_flight() {
     ReportFlight flight;
     flight.name = "20_07_03__12_17_45";
-    flight.series.tracks = {track("altitude_m", {0, 10, 20, 30, 40}, {200, 200, 260, 205, 200}),
-                            track("power_w", {0, 10, 20, 30, 40}, {0, 36, 36, 36, 0}),
-                            track("east_m", {0, 10, 15, 20, 25, 30, 40}, {-500, 0, 100, 100, 0, 0, 900}),
-                            track("north_m", {0, 10, 15, 20, 25, 30, 40}, {0, 0, 0, 100, 100, 0, 0})};
+    flight::FlightSeries series;
+    series.tracks = {track("altitude_m", {0, 10, 20, 30, 40}, {200, 200, 260, 205, 200}),
+                     track("power_w", {0, 10, 20, 30, 40}, {0, 36, 36, 36, 0}),
+                     track("east_m", {0, 10, 15, 20, 25, 30, 40}, {-500, 0, 100, 100, 0, 0, 900}),
+                     track("north_m", {0, 10, 15, 20, 25, 30, 40}, {0, 0, 0, 100, 100, 0, 0})};
+    flight.data = select_tracks(series);
     flight::Sortie sortie;
     for (const auto phase : flight::all_phases) {
         flight::PhaseSpan span;
@@ -86,7 +89,7 @@ TEST(FlightFacts, AreThoseOfTheTimeInTheAir) {
 
 TEST(FlightFacts, MeasureTheWayThroughTheAirByAirspeed) {
     auto flight = square_flight();
-    flight.series.tracks.push_back(track("airspeed_m_per_s", {0, 10, 20, 30, 40}, {50, 10, 12, 10, 50}));
+    flight.data.airspeed_m_per_s = {track("airspeed_m_per_s", {0, 10, 20, 30, 40}, {50, 10, 12, 10, 50})};
     EXPECT_DOUBLE_EQ(summarize_flight(flight).air_distance_m.value(), 220.0) << "11 m/s for 20 s";
 }
 
@@ -98,9 +101,9 @@ TEST(FlightFacts, HaveNoCruisePowerWithoutACruise) {
 
 TEST(FlightFacts, MeasureDegreesOnTheEarth) {
     auto flight = square_flight();
-    flight.series.tracks.resize(2);
-    flight.series.tracks.push_back(track("latitude_deg", {10, 30}, {43.0, 43.01}));
-    flight.series.tracks.push_back(track("longitude_deg", {10, 30}, {1.0, 1.0}));
+    flight.data.east_m = flight.data.north_m = {};
+    flight.data.latitude_deg = {track("latitude_deg", {10, 30}, {43.0, 43.01})};
+    flight.data.longitude_deg = {track("longitude_deg", {10, 30}, {1.0, 1.0})};
     const auto facts = summarize_flight(flight);
     ASSERT_TRUE(facts.distance_m);
     EXPECT_NEAR(*facts.distance_m, 1111.1, 1.0) << "a hundredth of a degree of latitude";
@@ -109,17 +112,17 @@ TEST(FlightFacts, MeasureDegreesOnTheEarth) {
 TEST(FlightFacts, HaveTheDateOfTheClockOrElseOfTheName) {
     auto flight = square_flight();
     EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 12:17");
-    flight.series.start_clock_s = 1593771465.0;
+    flight.data.start_clock_s = 1593771465.0;
     EXPECT_EQ(summarize_flight(flight).date, "2020-07-03 10:17") << "UTC";
     EXPECT_EQ(summarize_flight(flight).start_clock_s, 1593771465.0);
-    flight.series.start_clock_s.reset();
+    flight.data.start_clock_s.reset();
     flight.name = "survey";
     EXPECT_EQ(summarize_flight(flight).date, "");
 }
 
 TEST(FlightFacts, SayNothingOfWhatWasNotLogged) {
     auto flight = square_flight();
-    flight.series.tracks.resize(1);
+    flight.data.power_w = flight.data.east_m = flight.data.north_m = {};
     const auto facts = summarize_flight(flight);
     EXPECT_FALSE(facts.distance_m);
     EXPECT_FALSE(facts.energy_wh);

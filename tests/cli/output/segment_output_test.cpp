@@ -3,6 +3,7 @@
 #include "cli/output/segment_output.h"
 
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/test_paths.h"
 
 #include <fmt/format.h>
@@ -15,30 +16,30 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Explanation, GivesTheReasonsOfEveryEdgeAndThePowerRecord) {
-    const auto series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    const auto phases = segment(select_tracks(series));
-    auto power = check_power_record(select_tracks(series), phases);
-    const auto table = edges_table(series, phases);
+    const auto data = select_tracks(flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data"));
+    const auto phases = segment(data);
+    auto power = check_power_record(data, phases);
+    const auto table = edges_table(data, phases);
     ASSERT_EQ(table.rows.size(), 4U);
     EXPECT_EQ(table.rows[2][1], "start of landing");
     EXPECT_EQ(table.rows[2][8], "Land Right AF-TD");
     EXPECT_EQ(table.rows[0][0], "1");
     EXPECT_EQ(table.rows[0][2], fmt::format("{:.1f}", phases.sorties[0].phases[0].start.time_s));
-    auto text = explanation(select_tracks(series), phases, power, {});
+    auto text = explanation(data, phases, power, {});
     EXPECT_THAT(text, HasSubstr(to_text(table)));
     EXPECT_THAT(text, HasSubstr("idle current mean: "));
     EXPECT_THAT(text, HasSubstr(fmt::format("gaps in flight: {}", power.gaps.size())));
     power.idle.reset();
-    text = explanation(select_tracks(series), phases, power, {});
+    text = explanation(data, phases, power, {});
     EXPECT_THAT(text, testing::Not(HasSubstr("idle current")));
 }
 
 TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
-    const auto series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
-    const auto phases = segment(select_tracks(series));
-    const auto power = check_power_record(select_tracks(series), phases);
+    const auto data = select_tracks(flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data"));
+    const auto phases = segment(data);
+    const auto power = check_power_record(data, phases);
     const std::vector<std::string> warnings{"a warning"};
-    const auto json = record_json(SegmentedFlight{&series, &phases, &power, &warnings});
+    const auto json = record_json(SegmentedFlight{&data, &phases, &power, &warnings});
     EXPECT_EQ(json["flight"], "opterra_synthetic_01");
     ASSERT_EQ(json["sorties"].size(), 1U);
     const auto& spans = json["sorties"][0]["phases"];

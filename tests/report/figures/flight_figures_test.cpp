@@ -1,7 +1,7 @@
 #include "report/figures/flight_figures.h"
 
 #include "flight/load_flight.h"
-#include "helpers/selected_tracks.h"
+#include "flight/select.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 
 ReportFlight sample_flight() {
     ReportFlight flight;
-    flight.series = flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
+    flight.data = select_tracks(flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data"));
     flight.phases = segment(flight.data);
-    flight.name = flight.series.flight;
+    flight.name = flight.data.flight;
     return flight;
 }
 
@@ -47,7 +47,7 @@ TEST(FlightFigure, SaysWhereTheLogEnds) {
     auto flight = sample_flight();
     auto& landing = flight.phases.sorties.front().phases.back();
     landing.complete = false;
-    landing.end.time_s = flight::power_track(flight.series).time_s.back();
+    landing.end.time_s = flight.data.power_w.time_s.back();
     const auto edges = edges_of(flight);
     ASSERT_EQ(edges.size(), 4U);
     EXPECT_EQ(edges[3].name, "the log ends");
@@ -55,7 +55,7 @@ TEST(FlightFigure, SaysWhereTheLogEnds) {
 
 TEST(FlightFigure, DrawsNoChannelThatTheLogLacks) {
     auto flight = sample_flight();
-    std::erase_if(flight.series.tracks, [](const flight::Track& track) { return track.name == "throttle_percent"; });
+    flight.data.throttle_percent = {};
     EXPECT_EQ(flight_figure(flight, nullptr, "f").spec["vconcat"].size(), 2U);
 }
 

@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "flight/select.h"
 #include "helpers/synthetic_discharge.h"
 #include "report/figures/flight_figures.h"
 #include "report/sections/sections.h"
@@ -15,8 +16,8 @@ using testing::HasSubstr;
 
 ReportFlight flight_on(const battery::Battery& pack, std::uint64_t seed) {
     ReportFlight flight;
-    flight.series = test::synthetic_discharge(pack, {}, seed);
-    flight.name = flight.series.flight;
+    flight.data = select_tracks(test::synthetic_discharge(pack, {}, seed));
+    flight.name = flight.data.flight;
     return flight;
 }
 
@@ -65,9 +66,9 @@ TEST(BatterySection, LimitsTheFlightsAndSaysSo) {
 TEST(BatterySection, SaysWhyThereIsNone) {
     const auto pack = test::known_pack();
     auto computed = flight_on(pack, 1);
-    computed.series.current_origin = flight::CurrentOrigin::throttle;
+    computed.data.current_origin = flight::CurrentOrigin::throttle;
     auto voltless = flight_on(pack, 2);
-    std::erase_if(voltless.series.tracks, [](const auto& track) { return track.name == "voltage_v"; });
+    voltless.data.voltage_v = {};
     auto faulty = flight_on(pack, 3);
     faulty.unusable_power = "its power record is <faulty>";
     ReportFlight rejected;

@@ -1,4 +1,5 @@
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/test_paths.h"
 #include "report/sections/sections.h"
 
@@ -13,9 +14,9 @@ using testing::Not;
 
 ReportFlight sample_flight(const std::string& path) {
     ReportFlight flight;
-    flight.series = flight::read_flight(test::source_dir() / (path + ".data"));
+    flight.data = select_tracks(flight::read_flight(test::source_dir() / (path + ".data")));
     flight.phases = segment(flight.data);
-    flight.name = flight.series.flight;
+    flight.name = flight.data.flight;
     return flight;
 }
 

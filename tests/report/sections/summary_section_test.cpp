@@ -1,4 +1,5 @@
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/paper_missions.h"
 #include "helpers/test_paths.h"
 #include "report/sections/sections.h"
@@ -16,17 +17,17 @@ using testing::StartsWith;
 
 ReportFlight read_sample() {
     ReportFlight flight;
-    flight.series = flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
+    flight.data = select_tracks(flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data"));
     flight.phases = segment(flight.data);
-    flight.name = flight.series.flight;
+    flight.name = flight.data.flight;
     return flight;
 }
 
 TEST(SummarySection, NamesSyntheticAircraftSo) {
     auto one = read_sample();
     auto other = one;
-    other.series.aircraft_id = "8";
-    other.series.aircraft_name = "Twinstar";
+    other.data.aircraft_id = "8";
+    other.data.aircraft_name = "Twinstar";
     auto rejected = one;
     rejected.rejected = "it is empty";
     const std::vector<ReportFlight> flights{one, other, rejected};

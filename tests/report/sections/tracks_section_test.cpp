@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "flight/load_flight.h"
+#include "flight/select.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 #include "report/sections/page_data.h"
@@ -18,9 +19,9 @@ using testing::HasSubstr;
 
 BatchContent sample_batch() {
     ReportFlight flight;
-    flight.series = flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
+    flight.data = select_tracks(flight::read_flight(test::source_dir() / "logs/opterra_synthetic_01.data"));
     flight.phases = segment(flight.data);
-    flight.name = flight.series.flight;
+    flight.name = flight.data.flight;
     BatchContent batch;
     batch.flights = {flight};
     return batch;
@@ -50,7 +51,7 @@ TEST(TracksSection, PlacesOutlinesByAPositionInDegrees) {
     const auto place = data_of(*section)[0]["place"];
     ASSERT_EQ(place.size(), 4U);
     EXPECT_NEAR(place[2].get<double>(), 10.39, 0.1);
-    std::erase_if(batch.flights[0].series.tracks, [](const auto& track) { return track.name == "longitude_deg"; });
+    batch.flights[0].data.longitude_deg = {};
     EXPECT_TRUE(data_of(*tracks_section(batch, nullptr))[0]["place"].is_null());
 }
 
@@ -64,7 +65,7 @@ TEST(TracksSection, ShowsTheChargeOfAnIdentifiedBattery) {
 
 TEST(TracksSection, IsAbsentWithoutPositions) {
     auto batch = sample_batch();
-    std::erase_if(batch.flights[0].series.tracks, [](const flight::Track& track) { return track.name == "east_m"; });
+    batch.flights[0].data.east_m = {};
     EXPECT_FALSE(tracks_section(batch, nullptr));
 }
 
