@@ -88,7 +88,7 @@ TEST(Segmentation, FindsNoSortieWithoutDuration) {
     const auto phases = segment(select_tracks(series));
     EXPECT_TRUE(phases.sorties.empty());
     ASSERT_EQ(phases.ground_events.size(), 1u);
-    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("too short for a phase"));
+    EXPECT_THAT(phases.ground_events[0].what, HasSubstr("too short for a flight"));
 }
 
 TEST(Segmentation, DoesNotDependOnTheUnitOfHeightOrTheHourOfTheLog) {

@@ -34,6 +34,13 @@ bool is_in_the_air(const ResampledFlight& grid, const Activity& activity, IndexS
     return rest.size() < grid.steps(min_ground_s) || after->wander_m > max_still_m;
 }
 
+/// The first point at which the altitude is known, where a log begins in the air; the first one where none is known.
+std::size_t first_with_altitude(const ResampledFlight& grid, IndexSpan span) {
+    auto first = span.begin;
+    while (first < span.end && !grid.has_altitude[first]) ++first;
+    return first == span.end ? span.begin : first;
+}
+
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
     std::vector<double> upper;
     upper.reserve(heights.size());
@@ -212,6 +219,7 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
         for (auto begin = piece.begin; begin < piece.end;) {
             const bool last = r == rests.size() || rests[r].begin >= piece.end;
             const auto end = last ? piece.end : rests[r].begin;
+            if (before == nullptr) begin = first_with_altitude(grid, {begin, end});
             if (end > begin) {
                 Activity activity{{begin, end}, {begin, end}};
                 if (before != nullptr) {

@@ -106,6 +106,15 @@ std::string_view own_part(std::string_view cell, std::string_view track) {
     return cell.substr(0, cell[blank - 1] == ',' ? blank - 1 : blank);
 }
 
+/// Moves second 0 of a recording to its first row. `start_clock_s` is the Unix time of second 0.
+void begin_at_zero(std::vector<double>& time_s, std::vector<telemetry::SkippedLines>& skipped, double& start_clock_s) {
+    const double shift_s = time_s.front();
+    start_clock_s += shift_s;
+    for (double& t : time_s) t -= shift_s;
+    for (auto& lines : skipped)
+        for (auto& at : lines.lines) at.time_s -= shift_s;
+}
+
 /// Collects the raw rows of the tracks.
 class MappedRows {
   public:
@@ -155,6 +164,9 @@ class MappedRows {
         FlightSeries series;
         series.clock_restart = find_clock_restart(log.senders.front());
         auto& [message, time_s, columns, places] = log.senders.front().tables.front();
+        series.start_clock_s = clock_.start_clock_s();
+        // The clock of a recording that was appended, but made earlier, has another second 0.
+        if (series.start_clock_s && time_s.front() < 0.0) begin_at_zero(time_s, log.skipped, *series.start_clock_s);
         for (std::size_t t = 0; t < tracks_.size(); ++t) {
             const auto& mapped = *tracks_[t].mapped;
             auto track = make_track(time_s, columns[t].values, merge_of(mapped.name));
@@ -163,7 +175,6 @@ class MappedRows {
             series.tracks.push_back(std::move(track));
         }
         sort_tracks(series.tracks);
-        series.start_clock_s = clock_.start_clock_s();
         series.skipped = std::move(log.skipped);
         for (auto& skipped : series.skipped)
             std::ranges::stable_sort(skipped.lines, {}, &telemetry::SkippedLines::AtTime::time_s);
