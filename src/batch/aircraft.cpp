@@ -210,8 +210,9 @@ FlightAircraft aircraft_of(const flight::LoadedFlight& loaded) {
 
 CellRange possible_cells(double pack_voltage_v) {
     if (!(pack_voltage_v > 0.0) || pack_voltage_v > 1e6) return {};
-    const int min = static_cast<int>(std::ceil(pack_voltage_v / full_cell_v));
-    return {min, std::max(min, static_cast<int>(pack_voltage_v / empty_cell_v))};
+    constexpr double rounding = 1e-9;  // 5 * 3.3 / 3.3 < 5
+    const int min = static_cast<int>(std::ceil(pack_voltage_v / full_cell_v - rounding));
+    return {min, std::max(min, static_cast<int>(pack_voltage_v / empty_cell_v + rounding))};
 }
 
 std::vector<AircraftGroup> group_aircraft(std::span<const FlightAircraft> flights) {
