@@ -43,7 +43,7 @@ struct LoggedMessage {
 
 /// The rows of the requested messages of a log that defines them, one after the other. A row whose time leaves the
 /// clock of the rows around it is damaged: a jump counts only if the next row with a time confirms it. Rows without a
-/// time are spread over the time between those around them; a pause of the log is none of theirs.
+/// time are spread between the times around them, but not over a pause of the log.
 class RowCollector {
   public:
     using ValueOf = std::function<double(std::size_t field)>;
