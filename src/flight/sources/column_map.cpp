@@ -35,7 +35,7 @@ double unit_factor(const TomlTable& table, const std::string& track) {
         "expected a unit such as V, mA, mW, mAh, m, ft, cm/s, km/h, mph, kt, deg, rad or %, or its factor");
 }
 
-MappedTrack read_track(const TomlTable& table) {
+MappedTrack read_mapped_track(const TomlTable& table) {
     MappedTrack track;
     track.name = table.string("name");
     if (std::ranges::find(track_names(), track.name) == track_names().end()) {
@@ -137,7 +137,7 @@ ColumnMap parse_column_map(const std::string& text, const std::filesystem::path&
         return std::ranges::find(map.tracks, name, &MappedTrack::name) != map.tracks.end();
     };
     for (const auto& track : table.tables("track")) {
-        auto read = read_track(track);
+        auto read = read_mapped_track(track);
         if (maps(read.name))
             throw InputError(track.where("name"), fmt::format("{} is named twice", read.name),
                              "keep one, or give it several `columns` of which files have one");
