@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "batch/batch_files.h"
 #include "batch/manifest.h"
+#include "flight/column_map.h"
 #include "flight/load_flight.h"
 #include "flight/phases_file.h"
 #include "flight/series_file.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "flight/sources/column_map.h"
+#include "flight/column_map.h"
 #include "flight/flight_series.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"

@@ -2,7 +2,7 @@
 #include "base/toml_reader.h"
 #include "battery/battery.h"
 #include "compute/profile_specification.h"
-#include "flight/sources/column_map.h"
+#include "flight/column_map.h"
 #include "flight/series_file.h"
 #include "helpers/document.h"
 #include "helpers/test_paths.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/sources/column_map.h"
+#include "flight/column_map.h"
 
 #include <filesystem>
 #include <string_view>

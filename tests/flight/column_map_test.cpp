@@ -1,4 +1,4 @@
-#include "flight/sources/column_map.h"
+#include "flight/column_map.h"
 
 #include "flight/load_flight.h"
 #include "flight/sources/mapped_csv.h"

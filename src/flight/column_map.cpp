@@ -1,4 +1,4 @@
-#include "flight/sources/column_map.h"
+#include "flight/column_map.h"
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
