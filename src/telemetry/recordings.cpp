@@ -1,13 +1,9 @@
 #include "telemetry/recordings.h"
 
-#include "base/error.h"
-
 #include <algorithm>
 #include <limits>
 #include <string_view>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -129,10 +125,7 @@ TelemetryLog part_of(const TelemetryLog& log, std::size_t begin, std::size_t end
 std::vector<std::size_t> bounds_of(const TelemetryLog& log, const ShowsRestart& shows_restart) {
     const auto rows = rows_in_order(log);
     const auto falls = falls_of_clock(rows);
-    if (falls.size() >= max_recordings) {
-        throw InputError({log.data_file.string()}, fmt::format("the clock restarts {} times or more", max_recordings),
-                         fmt::format("a file may have {} recordings: is its clock damaged?", max_recordings));
-    }
+    if (falls.size() >= max_recordings) return {0, no_end};
     const auto bound = [&](std::size_t fall) { return rows[fall - 1].place + 1; };
     std::vector<std::size_t> bounds{0};
     for (std::size_t i = 0; i < falls.size(); ++i) {

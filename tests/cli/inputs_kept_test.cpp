@@ -218,7 +218,8 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"N",
+const std::set<std::string> no_files{"AIRCRAFT",
+                                     "N",
                                      "S",
                                      "X",
                                      "P",

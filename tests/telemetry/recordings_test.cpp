@@ -1,6 +1,5 @@
 #include "telemetry/recordings.h"
 
-#include "helpers/rejected.h"
 
 #include <algorithm>
 #include <string>
@@ -14,7 +13,6 @@ namespace flightwatt::telemetry {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 /// A log of rows in the order of the file, one a line, in turn of two messages of a sender.
 TelemetryLog log_of(const std::vector<double>& time_s) {
@@ -145,12 +143,12 @@ TEST(SplitRecordings, LeavesOutSendersAndMessagesWithoutRows) {
     EXPECT_EQ(parts[1].senders.size(), 2U);
 }
 
-TEST(SplitRecordings, RefusesAClockThatRestartsAgainAndAgain) {
+TEST(SplitRecordings, LeavesAClockThatRestartsAgainAndAgain) {
     std::vector<double> time_s;
     for (std::size_t i = 0; i < max_recordings; ++i) add(time_s, 0.0, 100.0);
     EXPECT_EQ(spans_of(time_s).size(), max_recordings);
     add(time_s, 0.0, 100.0);
-    EXPECT_THAT(test::rejected([&] { spans_of(time_s); }), HasSubstr("x.data: the clock restarts 64 times or more"));
+    EXPECT_EQ(spans_of(time_s).size(), 1U) << "damage, not recordings";
 }
 
 }  // namespace
