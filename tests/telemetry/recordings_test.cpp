@@ -1,6 +1,5 @@
 #include "telemetry/recordings.h"
 
-
 #include <algorithm>
 #include <string>
 #include <utility>
