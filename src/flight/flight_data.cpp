@@ -105,7 +105,7 @@ FlightData of_circuit(FlightData data, std::size_t number) {
         std::vector<std::string> names;
         for (const auto& circuit : data.circuits) names.push_back(circuit.name);
         throw InputError({data.file}, fmt::format("{} has no circuit {}", data.flight, number),
-                         names.empty() ? "its log does not number batteries: leave the circuit out"
+                         names.empty() ? "its log does not number batteries: leave --circuit out"
                                        : fmt::format("its circuits are, from 1: {}", fmt::join(names, ", ")));
     }
     const auto& circuit = data.circuits[number - 1];

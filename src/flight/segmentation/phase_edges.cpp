@@ -34,11 +34,14 @@ bool is_in_the_air(const ResampledFlight& grid, const Activity& activity, IndexS
     return rest.size() < grid.steps(min_ground_s) || after->wander_m > max_still_m;
 }
 
-/// The first point at which the altitude is known, where a log begins in the air; the first one where none is known.
-std::size_t first_with_altitude(const ResampledFlight& grid, IndexSpan span) {
-    auto first = span.begin;
-    while (first < span.end && !grid.has_altitude[first]) ++first;
-    return first == span.end ? span.begin : first;
+/// Leaves out what is before the first altitude of the log, where that comes so late that nothing shows how high, or
+/// whether, the aircraft flies there.
+void begin_with_altitude(const ResampledFlight& grid, Activity& activity) {
+    auto& [begin, end] = activity.moving;
+    if (activity.ground_before || grid.altitude_time_s.empty() || grid.has_altitude[begin]) return;
+    auto first = begin;
+    while (first < end && grid.time_s(first) < grid.altitude_time_s.front()) ++first;
+    if (first < end) activity.span.begin = begin = first;
 }
 
 double median_of_upper_half(const std::vector<double>& heights, double highest) {
@@ -219,13 +222,13 @@ std::vector<Activity> find_activities(const ResampledFlight& grid, const std::ve
         for (auto begin = piece.begin; begin < piece.end;) {
             const bool last = r == rests.size() || rests[r].begin >= piece.end;
             const auto end = last ? piece.end : rests[r].begin;
-            if (before == nullptr) begin = first_with_altitude(grid, {begin, end});
             if (end > begin) {
                 Activity activity{{begin, end}, {begin, end}};
                 if (before != nullptr) {
                     activity.ground_before = adjacent_ground(grid, *before, true);
                     activity.span.begin -= std::min(reach, before->size());
                 }
+                begin_with_altitude(grid, activity);
                 if (!last) {
                     activity.ground_after = adjacent_ground(grid, rests[r], false);
                     if (is_in_the_air(grid, activity, rests[r])) activity.ground_after.reset();
