@@ -15,7 +15,7 @@
 namespace flightwatt::flight {
 Fields<PhaseStatistics> record_fields(const PhaseStatistics*);
 Fields<CircuitShare> record_fields(const CircuitShare*);
-}
+}  // namespace flightwatt::flight
 
 namespace flightwatt::batch {
 

@@ -93,7 +93,8 @@ std::map<std::string, std::string> track_sources(const FlightData& data);
 /// Warnings about the log and the choice of its tracks, for the user.
 std::vector<std::string> selection_warnings(const FlightData& data);
 
-/// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if there is none.
+/// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if it has no such
+/// circuit.
 FlightData of_circuit(FlightData data, std::size_t number);
 
 /// Why there is no measured power; empty if there is.

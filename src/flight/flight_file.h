@@ -85,9 +85,9 @@ std::string recording_name(const std::string& flight, std::size_t recording);
 /// Whether a name has the form of another recording than the first.
 bool is_recording_name(const std::string& flight);
 
-/// The recordings of a file (telemetry/recordings.h), without checks: of that aircraft (LoadOptions::aircraft), else of all
-/// that sent telemetry. Throws InputError if the file has no telemetry, OtherAircraftError without that aircraft, if it
-/// is required.
+/// The recordings of a file (telemetry/recordings.h), without checks: of that aircraft (LoadOptions::aircraft), else of
+/// all that sent telemetry. Throws InputError if the file has no telemetry, OtherAircraftError without that aircraft, if
+/// it is required.
 std::vector<Candidates> read_recordings(const FlightFile& file, const std::optional<std::string>& aircraft,
                                         bool required = true);
 

@@ -85,7 +85,7 @@ struct ClockRestart {
 inline constexpr auto sum_monitor = "sum";
 inline constexpr auto escs_monitor = "ESCs";
 
-/// What a log states of a flight beside its tracks.
+/// What a log states of a flight apart from its tracks.
 struct FlightInfo {
     std::string file;           ///< for errors
     std::string flight;         ///< the log's name without folder and ending

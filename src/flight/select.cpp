@@ -85,7 +85,7 @@ void choose_electrical(const FlightSeries& series, FlightData& data) {
     choose_voltage_and_current(series, data);
 }
 
-/// Those beside the chosen one, which may confirm or contradict it.
+/// Those other than the chosen one, which may confirm or contradict it.
 std::vector<Track> other_altitudes(const FlightSeries& series, const Track& chosen) {
     std::vector<Track> others;
     for (const auto& track : series.tracks)

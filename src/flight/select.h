@@ -6,7 +6,7 @@
 
 namespace flightwatt::flight {
 
-/// Chooses the track of each quantity: where nothing else is said the first candidate that varies, else the first with
+/// Chooses the track of each quantity: without a rule of its own the first candidate that varies, else the first with
 /// values, without outliers. Each choice may use those above it in select.cpp, none below it. What the log states is
 /// never guessed; measured and stated goes before measured, derived and assumed.
 FlightData select_tracks(const FlightSeries& series);

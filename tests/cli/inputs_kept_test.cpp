@@ -218,39 +218,12 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{"AIRCRAFT",
-                                     "N",
-                                     "S",
-                                     "X",
-                                     "P",
-                                     "M",
-                                     "W",
-                                     "A",
-                                     "AH",
-                                     "MB",
-                                     "HOW",
-                                     "NAME",
-                                     "TITLE",
-                                     "FONT",
-                                     "HEIGHT",
-                                     "ID",
-                                     "FLIGHT",
-                                     "A,B",
-                                     "KIND",
-                                     "A,B,power_w",
-                                     "FLIGHT[:PHASE]=W",
-                                     "NAME[,NAME]",
-                                     "S|now",
-                                     "M_PER_S",
-                                     "PERCENT",
-                                     "COMMAND",
-                                     "PORT",
-                                     "ADDRESS:PORT",
-                                     "DEVICE:BAUD",
-                                     "DATE",
-                                     "PATTERN",
-                                     "TARGET",
-                                     "WIDTH"};
+const std::set<std::string> no_files{
+    "AIRCRAFT",    "N",     "S",       "X",       "P",       "M",           "W",
+    "A",           "AH",    "MB",      "HOW",     "NAME",    "TITLE",       "FONT",
+    "HEIGHT",      "ID",    "FLIGHT",  "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
+    "NAME[,NAME]", "S|now", "M_PER_S", "PERCENT", "COMMAND", "PORT",        "ADDRESS:PORT",
+    "DEVICE:BAUD", "DATE",  "PATTERN", "TARGET",  "WIDTH"};
 
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",

@@ -68,7 +68,8 @@ Reading reading_of(const DocumentedExample& example, const std::filesystem::path
     }
     if (example.kind == "columns") {
         const auto csv =
-            write("own.csv", "Laboratory\nday 1\nt_ms,vbat_mv,ibat_ma,height_cm,vn,ve\n0,12000,500,0,0,0\n500,11900,900,10,3,4\n");
+            write("own.csv",
+                  "Laboratory\nday 1\nt_ms,vbat_mv,ibat_ma,height_cm,vn,ve\n0,12000,500,0,0,0\n500,11900,900,10,3,4\n");
         return {"flightwatt-parse", {csv, "--columns", write("columns.toml", example.text), "-o", "copy.csv"}};
     }
     return {};

@@ -208,8 +208,7 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
     const auto edge = grid.steps(0.3 * options.rest_s) + 1;
     for (const auto& piece : grid.pieces) {
         const auto [low_m, high_m] = std::ranges::minmax(part_of(grid.altitude_m, piece));
-        const double max_m =
-            by_altitude ? low_m + std::max(options.flight_height_m, 0.25 * (high_m - low_m)) : high_m;
+        const double max_m = by_altitude ? low_m + std::max(options.flight_height_m, 0.25 * (high_m - low_m)) : high_m;
         const auto is_still = [&](IndexSpan span, double height_m) {
             const auto altitude_m = part_of(grid.altitude_m, span);
             const auto [lowest_m, highest_m] = std::ranges::minmax(altitude_m);

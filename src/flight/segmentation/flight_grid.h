@@ -27,9 +27,9 @@ struct ResampledFlight {
     Track jumps_in_flight;                     ///< of the altitude [m], with the motor on
     Track detector;                            ///< of the ground, as the autopilot states it: "landed"
     MotorIndicator motor_indicator = MotorIndicator::unknown;
-    std::string motor_evidence;         ///< see MotorRecord
-    std::vector<std::string> warnings;  ///< removed and substituted data
-    std::string unusable;               ///< see CleanedAltitude
+    std::string motor_evidence;           ///< see MotorRecord
+    std::vector<std::string> warnings;    ///< removed and substituted data
+    std::string unusable;                 ///< see CleanedAltitude
     std::vector<double> altitude_time_s;  ///< of the samples that count
 
     std::size_t size() const { return altitude_m.size(); }

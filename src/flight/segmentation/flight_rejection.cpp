@@ -291,8 +291,9 @@ std::string stands_still(const FlightCandidate& c) {
 using Rejection = std::string (*)(const FlightCandidate&);
 
 /// The first reason counts.
-constexpr Rejection rejections[] = {has_no_altitude, stays_low,    rises_without_motor, climbs_too_fast, is_contradicted,
-                                    only_settles, moves_on_a_road,     only_drives,     stands_still};
+constexpr Rejection rejections[] = {has_no_altitude, stays_low,       rises_without_motor,
+                                    climbs_too_fast, is_contradicted, only_settles,
+                                    moves_on_a_road, only_drives,     stands_still};
 
 constexpr Rejection rotorcraft_rejections[] = {stays_on_ground, climbs_too_fast};
 

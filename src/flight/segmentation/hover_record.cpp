@@ -72,7 +72,8 @@ std::size_t end_of_fall(const ResampledFlight& grid, IndexSpan after) {
     const auto& altitude_m = grid.altitude_m;
     if (after.size() < 2 * half) return after.begin;
     for (auto i = after.begin; i + 2 * half <= after.end; ++i) {
-        const double fall_m = mean(part_of(altitude_m, {i, i + half})) - mean(part_of(altitude_m, {i + half, i + 2 * half}));
+        const double fall_m =
+            mean(part_of(altitude_m, {i, i + half})) - mean(part_of(altitude_m, {i + half, i + 2 * half}));
         if (fall_m <= max_rest_m) return i;
     }
     return after.end;

@@ -7,7 +7,7 @@
 namespace flightwatt::flight {
 
 /// The throttle in percent: the first candidate that varies; commands to the motor where they come often or no power is
-/// measured, thrust only without both. A throttle of unknown unit may be a fraction, as the power tells. Where it idles
+/// measured, thrust only without both. A throttle of unknown unit may be a fraction, as the power shows. Where it idles
 /// while the motor is commanded (manual mode), the commands are used.
 ChosenTrack select_throttle(const FlightSeries& series, const Track& power_w);
 
