@@ -276,7 +276,8 @@ Heights compute_heights(const ResampledFlight& grid, const Activity& activity, c
     heights.ground_m = grounds.before_m;
     heights.wander_m = grounds.wander_m;
     heights.max_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
-    heights.cruise_height_m = median_of_upper_half(heights.height_m, heights.max_m);
+    // Of an altitude that is not that of the ground where the aircraft is at rest, all may be below it.
+    heights.cruise_height_m = std::max(median_of_upper_half(heights.height_m, heights.max_m), 0.0);
     return heights;
 }
 
