@@ -144,7 +144,8 @@ void for_each_csv_row(std::string_view text, const std::string& file, const CsvR
 std::vector<std::string> csv_cells(std::string_view line, char separator) {
     CsvRowView row{0, {}};
     const std::string file;
-    LineSplitter(file, row, {separator}).split(line);
+    LineSplitter splitter(file, row, {separator});  // owns texts of the cells
+    splitter.split(line);
     std::vector<std::string> cells;
     for (const auto& cell : row.cells) cells.emplace_back(cell.text);
     return cells;
