@@ -1,5 +1,6 @@
 // The program: `flightwatt STAGE ...`. flightwatt-STAGE is a link to it.
 
+#include "base/input_file.h"
 #include "base/toml_reader.h"
 #include "cli/stage.h"
 #include "stages.h"
@@ -94,6 +95,29 @@ int show_help(const Stage& stage) {
     return stage.run(2, arguments);
 }
 
+/// The stage that a file or folder is for, as a command.
+std::string command_for(const std::string& file) {
+    const auto name = cli::shell_quoted(file);
+    std::error_code none;
+    if (std::filesystem::is_directory(file, none))
+        return std::filesystem::exists(std::filesystem::path(file) / "batch.json", none)
+                   ? fmt::format("flightwatt report {} -o report.html", name)
+                   : fmt::format("flightwatt batch {} -o OUT", name);
+    if (!std::filesystem::is_regular_file(file, none)) return "";
+    switch (kind_of_text(read_file(file))) {
+        case FileKind::mission:
+            return fmt::format("flightwatt simulate {}", name);
+        case FileKind::mechanical_model:
+            return fmt::format("flightwatt new-mission --model {} --battery PACK.toml -o mission.toml", name);
+        case FileKind::battery:
+            return fmt::format("flightwatt new-mission --model MODEL.toml --battery {} -o mission.toml", name);
+        case FileKind::specification:
+            return fmt::format("flightwatt profile {} -o OUT", name);
+        default:
+            return fmt::format("flightwatt batch {0} -o OUT, or flightwatt segment {0}", name);
+    }
+}
+
 /// The program without a stage.
 int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
@@ -106,6 +130,8 @@ int run_front(const std::string& word) {
     } else if (word == "--version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
     } else {
+        if (const auto command = command_for(word); !command.empty())
+            throw UsageError(fmt::format("'{}' is not a stage; for such a file: {}", word, command));
         const auto near = nearest_word(word, stage_names());
         throw UsageError(
             fmt::format("there is no stage '{}'; {}", word,

@@ -53,15 +53,25 @@ batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& b
     };
 }
 
-void report_notes(const cli::StageCall& call, const batch::BatchFlight& flight) {
+Diagnostic rejection_of(const batch::FlightRecord& record) {
+    const auto reason = reason_without_log(record);
+    if (record.is_of_other_aircraft)
+        return {Severity::note, "of another aircraft", "left out: " + reason, record.flight};
+    if (!record.recordings.empty()) return {Severity::note, "recordings without a flight", reason, record.flight};
+    const auto place = reason.starts_with(record.log) ? reason.find(": ") : std::string::npos;  // with a line
+    const auto kind = kind_of_reason(place == std::string::npos ? reason : reason.substr(place + 2));
+    return {Severity::error, "rejected: " + kind, "rejected: " + record.error, record.flight};
+}
+
+void collect_diagnostics(const cli::StageCall& call, const batch::BatchFlight& flight) {
     if (flight.is_of_other_aircraft) return;
-    for (const auto& warning : flight.record.warnings)
-        cli::warn(call, fmt::format("{}: {}", flight.record.flight, warning));
-    for (const auto& exclusion : flight.selection.exclusions) cli::warn(call, to_string(exclusion));
-    if (!flight.record.accepted) {
-        cli::note(call, fmt::format("{}: {}: {}", flight.record.flight,
-                                    flight.record.is_of_other_aircraft ? "left out" : "rejected", flight.record.error));
-    }
+    const auto& record = flight.record;
+    for (const auto& [severity, kind, text, none] : record.diagnostics)
+        cli::add_diagnostic(call, {severity, kind, text, record.flight});
+    if (record.no_power_reason.empty())  // which has a diagnostic of its own
+        for (const auto& exclusion : flight.selection.exclusions)
+            cli::add_diagnostic(call, cli::diagnostic_of(exclusion));
+    if (!record.accepted) cli::add_diagnostic(call, rejection_of(record));
 }
 
 /// Without a fit no model of an earlier run stays behind to be taken for this one's.
@@ -186,7 +196,7 @@ std::optional<FittedBatch> finish_folder(const cli::StageCall& call, const Batch
     const auto copies = find_duplicates(flights);
     exclude_duplicates(flights, copies);
     const auto flown = cli::choose_aircraft(call, options.load.aircraft, flights);
-    for (const auto& flight : flights) report_notes(call, flight);
+    for (const auto& flight : flights) collect_diagnostics(call, flight);
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
     const auto shown = flights_text(call, flights, flown.groups, options);
@@ -249,7 +259,7 @@ int finish_each(const cli::StageCall& call, const BatchArguments& arguments, bat
     remove_model(call, options.out);
     const auto flown = cli::choose_aircraft(call, options.load.aircraft, flights);
     for (const auto& flight : flights)
-        if (flight.selection.flights.empty()) report_notes(call, flight);
+        if (flight.selection.flights.empty()) collect_diagnostics(call, flight);
     if (flown.groups.empty()) throw InputError({}, "no flight can be fitted", "see the reasons above");
     std::vector<cli::AircraftFolder> made;
     for (const auto& group : cli::certain_aircraft(call, flown.groups, flown.flights))
@@ -270,9 +280,8 @@ std::vector<batch::LogFile> chosen_logs(const cli::StageCall& call, const cli::F
     return logs;
 }
 
-/// The paths of --files-from. Throws UsageError where neither it nor the command names a log.
-std::vector<std::string> listed_logs(const cli::StageCall& call, const std::optional<std::string>& list) {
-    if (!list && call.inputs.empty()) throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
+/// The paths of --files-from; none without it.
+std::vector<std::string> listed_logs(const std::optional<std::string>& list) {
     if (!list) return {};
     const auto file = *list == "-" ? std::string("the standard input") : *list;
     const auto text = *list == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_file(*list);
@@ -293,9 +302,9 @@ flight::LoadOptions without_recordings(flight::LoadOptions options) {
 /// The changes of the run to the folder, before it makes them.
 batch::BatchPlan make_plan(const cli::StageCall& call, const BatchArguments& arguments,
                            const batch::BatchOptions& options) {
-    auto logs = chosen_logs(
-        call, arguments.filter,
-        batch::find_logs(call.inputs, listed_logs(call, arguments.files_from), arguments.flights.load.columns));
+    auto logs =
+        chosen_logs(call, arguments.filter,
+                    batch::find_logs(call.inputs, listed_logs(arguments.files_from), arguments.flights.load.columns));
     for (const auto& log : logs) {
         register_input(log.path);
         if (const auto file = telemetry::find_log_file(log.path)) register_input(*file);
@@ -323,8 +332,21 @@ void tell_plan(const cli::StageCall& call, const batch::BatchPlan& plan) {
             cli::note(call, fmt::format("{}: its log {} is missing; its results are kept", log.flight, log.path));
 }
 
+/// Results among the logs would be taken for logs.
+void refuse_folder_of_logs(const cli::StageCall& call) {
+    for (const auto& input : call.inputs) {
+        std::error_code none;
+        if (std::filesystem::equivalent(input, *call.output, none))
+            throw UsageError(fmt::format("--output {} is the folder of the logs: name another, such as {}-results",
+                                         *call.output, *call.output));
+    }
+}
+
 int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
+    if (call.inputs.empty() && !arguments.files_from)
+        throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
     if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
+    refuse_folder_of_logs(call);
     batch::BatchOptions options;
     options.out = *call.output;
     options.load = arguments.flights.load;

@@ -3,6 +3,7 @@
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -37,25 +38,26 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
                                                    std::optional<std::size_t> circuit) {
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
-    std::vector<InputError> refusals;
+    std::vector<std::pair<std::string, InputError>> refusals;  // by flight
     const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
-            if (!loaded.exclusion.empty()) {
-                throw InputError({file}, fmt::format("{}: {}", loaded.data.flight, loaded.exclusion));
-            }
+            if (!loaded.exclusion.empty()) throw InputError({file}, loaded.exclusion);
             auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
                                                         ? of_circuit(loaded.data, circuit.value_or(1))
                                                         : loaded.data);
-            for (const auto& text : found.notes) cli::warn(call, fmt::format("{}: {}", file, text));
+            for (const auto& text : found.notes)
+                cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
             return std::move(found.records);
         } catch (const InputError& error) {
-            refusals.push_back(error);
+            refusals.emplace_back(loaded.series.flight, error);
             return std::vector<battery::DischargeRecord>{};
         }
     };
     auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && refusals.size() == 1) throw InputError(refusals.front());
-    for (const auto& refusal : refusals) cli::warn(call, fmt::format("excluded: {}", refusal.what()));
+    if (records.empty() && refusals.size() == 1) throw InputError(refusals.front().second);
+    for (const auto& [flight, refusal] : refusals)
+        cli::add_diagnostic(call, {Severity::warning, "not used: " + kind_of_reason(refusal.what()),
+                                   fmt::format("it is excluded: {}", refusal.what()), flight});
     if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
     return records;
 }

@@ -110,7 +110,7 @@ int flightwatt::stages::compare_stage(int argc, char** argv) {
 lasts longer comes first. A mission without a schedule is planned first, one with an adaptive policy in
 flight. --json lists the summaries in that order. -o FILE.md writes the table as Markdown, -o FILE.csv as CSV
 with all digits.)"};
-    stage.next = [](const auto&) { return "flightwatt report {in} -o report.html"; };
+    stage.next = [](const auto&) { return "flightwatt report OUT {in} -o report.html"; };
     stage.json_schema = cli::document_schema<cli::MissionComparison>;
     stage.examples = {"flightwatt compare missions/paper/*.toml",
                       "flightwatt compare a.toml b.toml --samples 2000 -o ranking.csv"};

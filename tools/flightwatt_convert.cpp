@@ -163,10 +163,12 @@ int convert_to_series(const cli::StageCall& call, const flight::FlightFile& file
                                     path, used, recordings.size()));
     ConvertedLog converted{.text = to_csv(series)};
     converted.counts.bytes = file.text().size();
-    auto warnings = series.notes;
-    for (const auto& skipped : series.skipped) warnings.push_back(describe(skipped));
+    append(*call.diagnostics, Severity::note, "reading of the log", path, series.notes);
+    for (const auto& skipped : series.skipped)
+        cli::add_diagnostic(call, {is_partial_record(skipped) ? Severity::note : Severity::warning, "damaged log",
+                                   describe(skipped), path});
+    const auto warnings = texts_of(*call.diagnostics);
     cli::write_result(call, converted.text);
-    for (const auto& warning : warnings) cli::warn(call, fmt::format("{}: {}", path, warning));
     if (call.json)
         cli::print_json(call, ConvertOutput{&file, &converted, &warnings});
     else

@@ -30,16 +30,17 @@ Fields<ParseOutput> record_fields(const ParseOutput*) {
         const auto by_name = track_sources(loaded.data);
         return Keyed<std::string>(by_name.begin(), by_name.end());
     };
-    return {field("flight", at(&R::loaded, &L::data, &D::flight), "name of the flight"),
-            field("aircraft_id", at(&R::loaded, &L::data, &D::aircraft_id), "id of the aircraft"),
-            field("aircraft_name", at(&R::loaded, &L::data, &D::aircraft_name), "name of the aircraft"),
-            field("power_source", &R::power_source, "message of the power"),
-            field("samples", &R::samples, "power samples"),
-            field("start_s", &R::start_s, "first power sample"),
-            field("end_s", &R::end_s, "last power sample"),
-            field("median_interval_s", &R::median_interval_s, "between power samples"),
-            field("sources", at(&R::loaded, sources), "message of each track"),
-            field("warnings", at(&R::loaded, &L::warnings), "warnings")};
+    return {
+        field("flight", at(&R::loaded, &L::data, &D::flight), "name of the flight"),
+        field("aircraft_id", at(&R::loaded, &L::data, &D::aircraft_id), "id of the aircraft"),
+        field("aircraft_name", at(&R::loaded, &L::data, &D::aircraft_name), "name of the aircraft"),
+        field("power_source", &R::power_source, "message of the power"),
+        field("samples", &R::samples, "power samples"),
+        field("start_s", &R::start_s, "first power sample"),
+        field("end_s", &R::end_s, "last power sample"),
+        field("median_interval_s", &R::median_interval_s, "between power samples"),
+        field("sources", at(&R::loaded, sources), "message of each track"),
+        field("warnings", at(&R::loaded, [](const L& loaded) { return texts_of(loaded.diagnostics); }), "warnings")};
 }
 
 int parse(const cli::StageCall& call, flight::LoadOptions options) {

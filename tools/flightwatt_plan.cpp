@@ -222,7 +222,8 @@ and the result is a table of them (CSV); their schedules are in --json.)"};
     stage.uses_threads = true;
     PlanArguments arguments;
     auto& options = stage.options;
-    options.add("probability", arguments.probability, {.value = "P", .min = 0.5, .max = 1.0, .below_max = true},
+    options.add("probability", arguments.probability,
+                {.value = "P", .min = 0.5, .max = 1.0, .below_max = true, .hint = "95 % is 0.95"},
                 "keep the reserve with this probability, 0.5 or more, as flights differ; default: as modelled");
     options.add(
         "longest-cruise", arguments.longest_cruise,

@@ -43,7 +43,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
         throw NoResultError(fmt::format("{}: no power was measured by {:.1f} s of the log", series.flight, until_s));
     }
     auto loaded = segment_and_check(std::move(series), options);
-    cli::warn_of(call, file, loaded);
+    cli::add_diagnostics(call, file, loaded);
     if (!loaded.exclusion.empty()) {
         cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file, loaded.exclusion));
     }
@@ -54,7 +54,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
 Prediction predict_flight(const cli::StageCall& call, const PredictArguments& arguments) {
     const auto basis = cli::read_basis(call, arguments.basis);
     const auto known = read_progress(call, arguments.time, arguments.load);
-    live::Diagnostics remarks;
+    live::Remarks remarks;
     try {
         auto prediction = live::predict_flight(basis, known.flown, known.data, remarks);
         cli::warn_of(call, remarks);

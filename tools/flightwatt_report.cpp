@@ -110,6 +110,12 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     if (input.with_replay && (input.out.empty() || input.missions.empty()))
         throw UsageError(
             "--replay flies missions on a batch's flights: give a folder of flightwatt batch and missions");
+    if (const auto ending = std::filesystem::path(call.output.value_or("")).extension();
+        !ending.empty() && ending != ".html" && ending != ".htm")
+        throw UsageError(
+            fmt::format("{}: a report is a web page: expected -o FILE.html; --figures DIR writes its "
+                        "figures as .svg and .pdf",
+                        *call.output));
     const bool wants_page = call.output || (!call.json && !arguments.figures);
     if (wants_page && !call.output && ::isatty(STDOUT_FILENO) == 1)
         throw UsageError("a page is not for a terminal: expected -o FILE.html");

@@ -38,25 +38,26 @@ void append_rows(const std::string& rows, const std::string& flight, std::string
     while (std::getline(lines, line)) csv += csv_cell(flight) + "," + line + "\n";
 }
 
-void add_flight(const cli::StageCall& call, const std::string& file, const flight::LoadedFlight& loaded,
-                SegmentedFlights& segmented) {
+void add_flight(const cli::StageCall& call, const flight::LoadedFlight& loaded, SegmentedFlights& segmented) {
     const auto& data = loaded.data;
     const auto& phases = loaded.phases;
     const auto& power = loaded.power;
-    for (const auto& other : phases.ground_events) {
-        cli::note(call, fmt::format("{}: no flight from {:.0f} to {:.0f} s: {}", file, other.start_s, other.end_s,
-                                    other.what));
-    }
-    for (const auto& fault : power.power_faults) {
-        cli::warn(call, fmt::format("{}: power fault: {}", file, fault));
-    }
+    if (const auto& events = phases.ground_events; !events.empty() && !segmented.explains)
+        cli::add_diagnostic(call, {Severity::note, "motion or motor without a flight",
+                                   fmt::format("{} time{} without a flight, the first from {:.0f} to {:.0f} s: {}; "
+                                               "--explain lists all",
+                                               events.size(), events.size() == 1 ? "" : "s", events.front().start_s,
+                                               events.front().end_s, events.front().what),
+                                   data.flight});
+    append(*call.diagnostics, Severity::warning, "power faults", data.flight, power.power_faults);
     segmented.title = cli::describe_flight(data, phases);
     if (segmented.are_several)
         append_rows(flight::phases_csv(data, phases), data.flight, segmented.csv);
     else
         segmented.csv = flight::phases_csv(data, phases);
     if (call.json)
-        segmented.json.flights.push_back(record_json(cli::SegmentedFlight{&data, &phases, &power, &loaded.warnings}));
+        segmented.json.flights.push_back(
+            record_json(cli::SegmentedFlight{&data, &phases, &power, &loaded.diagnostics}));
     if (!segmented.explains) return;
     if (segmented.are_several)
         segmented.explained += (segmented.explained.empty() ? "" : "\n") + segmented.title + "\n";
@@ -71,9 +72,8 @@ std::size_t add_file(const cli::StageCall& call, const std::string& file, const 
     for (const auto& flight : loaded.flights) {
         names.push_back(flight.series.flight);
         if (options.excluded.contains(names.back())) continue;
-        const auto label = cli::label_of(file, flight);
-        cli::warn_of(call, label, flight);
-        add_flight(call, label, flight, segmented);
+        cli::add_diagnostics(call, file, flight);
+        add_flight(call, flight, segmented);
         ++used;
     }
     return used;
@@ -93,7 +93,7 @@ void segment_several(const cli::StageCall& call, flight::LoadOptions options, Se
                              segmented);
             continue;
         } catch (const flight::OtherAircraftError& error) {
-            cli::note(call, fmt::format("{} is left out: {}; {}", name, error.what(), error.hint()));
+            cli::add_other_aircraft(call, name, error);
         } catch (const InputError& error) {
             if (!options.excluded.contains(name)) cli::skip_input(call, file, error);
         }

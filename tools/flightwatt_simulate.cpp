@@ -93,7 +93,7 @@ With [packs], the flights follow each other, with the time on the ground between
 A mission with [policy] kind = "adaptive" is replanned in flight. --samples draws flights and reports
 their final state of charge; the CSV stays that of the mission as it is stated.)"};
     stage.max_inputs = 1;
-    stage.next = [](const auto&) { return "flightwatt report {in} -o report.html"; };
+    stage.next = [](const auto&) { return "flightwatt report OUT {in} -o report.html"; };
     stage.json_schema = cli::document_schema<mission::MissionSummary, mission::PackFlights>;
     stage.shows_table = true;
     stage.examples = {"flightwatt simulate mission.toml -o soc.csv",

@@ -30,7 +30,9 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
     return cli::from_flights<report::FlightTrendData>(
         chosen, arguments.flights, [&](const std::string& file, flight::LoadedFlight& loaded) {
             if (!loaded.exclusion.empty()) {
-                cli::warn(call, fmt::format("excluded: {}: {}", loaded.data.flight, loaded.exclusion));
+                if (!cli::is_shown_by_batch(call, file))
+                    cli::add_diagnostic(call, {Severity::warning, "not used: " + kind_of_reason(loaded.exclusion),
+                                               "it is excluded: " + loaded.exclusion, loaded.data.flight});
                 return std::vector<report::FlightTrendData>{};
             }
             report::ReportFlight flight;
@@ -39,7 +41,8 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
             flight.phases = std::move(loaded.phases);
             auto flown = extract_trend_data(flight);
             if (!flown.no_record_reason.empty())
-                cli::note(call, fmt::format("no resistance and no capacity of {}: {}", file, flown.no_record_reason));
+                cli::add_diagnostic(
+                    call, {Severity::note, "no resistance and no capacity", flown.no_record_reason, flown.name});
             return std::vector{std::move(flown)};
         });
 }

@@ -20,7 +20,7 @@ using namespace flightwatt;
 /// Those that are in the air at the moment, with what they had flown by then.
 std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, const flight::LoadedFlight& loaded,
                                                    mechanical::MeasuredFlights measured, double until_s) {
-    for (const auto& exclusion : measured.exclusions) cli::warn(call, to_string(exclusion));
+    for (const auto& exclusion : measured.exclusions) cli::add_diagnostic(call, cli::diagnostic_of(exclusion));
     std::vector<mechanical::MeasuredFlight> flights;
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
@@ -33,7 +33,8 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
             flight.remaining = mechanical::bin_flight(loaded.data, spans).bins;
             flights.push_back(std::move(flight));
         } catch (const NoResultError& error) {
-            cli::warn(call, fmt::format("{} is excluded: {}", flight.samples.flight, error.what()));
+            cli::add_diagnostic(call, {Severity::warning, "not in the air at the moment",
+                                       fmt::format("it is excluded: {}", error.what()), flight.samples.flight});
         }
     }
     return flights;

@@ -186,6 +186,7 @@ second, with --json an object a line, with --serve also a page for a browser (do
 with its source, or by a signal, and then prints its last prediction. The source is one of --follow, --udp,
 --serial, --ivy and - (the standard input).)"};
     stage.min_inputs = 0;
+    stage.is_live = true;
     stage.json_schema = cli::document_schema<cli::WatchState, cli::WatchEnd>;
     stage.max_inputs = 1;
     stage.output_help = "write the last prediction to FILE, when it ends, instead of the standard output";

@@ -21,11 +21,11 @@ function still(part) {
   return Object.fromEntries(Object.entries(part).filter(([key, value]) => !(key === "point" && value?.opacity === 0)).map(([key, value]) => [key, still(value)]));
 }
 
-/** With panels of `factor` times their height, 50 px at least; squares remain squares. */
+/** With panels of `factor` times their height, 40 px at least; squares remain squares. */
 function flattened(part, factor) {
   const inner = Object.fromEntries(["concat", "vconcat", "hconcat"].filter((key) => part[key]).map((key) => [key, part[key].map((panel) => flattened(panel, factor))]));
   if (typeof part.height !== "number") return { ...part, ...inner };
-  const height = Math.max(Math.min(50, part.height), Math.floor(part.height * factor));
+  const height = Math.max(Math.min(40, part.height), Math.floor(part.height * factor));
   return { ...part, ...inner, height, width: part.width === part.height ? height : part.width };
 }
 

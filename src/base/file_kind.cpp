@@ -32,7 +32,8 @@ const std::vector<KnownFile>& known_files() {
         {foreign, "a program", "",
          "^\x7F"
          "ELF"},
-        {foreign, "a capture of MAVLink (.tlog)", "", "^\\x00[\\x04-\\x06][\\s\\S]{6}[\xFD\xFE]"},
+        {foreign, "a capture of MAVLink (.tlog)", "give the log that the autopilot wrote: its .bin or .ulg",
+         "^\\x00[\\x04-\\x06][\\s\\S]{6}[\xFD\xFE]"},
         {log, "a log", "expected a .data log, .LOG or .tlm of Paparazzi, a .bin or .ulg, or a CSV of a flight",
          "(^|\n)([0-9.]+ [^ \n]+ [A-Z]|FMT, ?128)|^(\xA3\x95\x80|ULog\x01)"},
         {unknown, "", "", "[\\x00-\\x08]"},  // binary: a log, or nothing that is known

@@ -1,11 +1,11 @@
 #include "batch/aircraft.h"
 
 #include "base/error.h"
-#include "base/statistics.h"
 #include "base/text.h"
 #include "base/text_table.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "mechanical/measured_flight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -187,12 +187,9 @@ std::string clipped(std::string text, std::size_t width) {
 }  // namespace
 
 FlightAircraft aircraft_of(const flight::LoadedFlight& loaded) {
-    constexpr double spikes = 0.01;
     const auto& data = loaded.data;
     FlightAircraft aircraft{data.flight, data.aircraft_id, data.aircraft_name, data.firmware};
-    auto voltages_v = data.voltage_v.value;
-    std::ranges::sort(voltages_v);
-    if (!voltages_v.empty()) aircraft.pack_voltage_v = quantile(voltages_v, 1.0 - spikes);
+    aircraft.pack_voltage_v = mechanical::pack_voltage_v(data);
     if (!loaded.lacks_power.empty()) return aircraft;
     const flight::PowerStatistics power(data);
     double energy_j = 0.0;

@@ -37,7 +37,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 10");
+    fingerprint.add(FLIGHTWATT_VERSION " record 11");
     fingerprint.add(log.path);
     if (!file.autopilot() && !file.is_series()) fingerprint.add(load.aircraft.value_or(""));  // may be of several
     fingerprint.add(log.why_not_fitted);
@@ -125,7 +125,9 @@ FlightRecords do_accepted(const flight::FlightFile& file, const LogFile& log, co
         records.push_back(std::move(record));
     }
     for (const auto& [number, reason] : loaded.unused)
-        if (number > 1) records.front().warnings.push_back(fmt::format("recording {} is not used: {}", number, reason));
+        if (number > 1)
+            records.front().diagnostics.push_back({Severity::note, "recordings without a flight",
+                                                   fmt::format("recording {} is not used: {}", number, reason)});
     return records;
 }
 

@@ -23,6 +23,14 @@ Field<R> phase_field(P R::*member, const auto&... changes) {
 
 }  // namespace
 
+Fields<Diagnostic> record_fields(const Diagnostic*) {
+    using R = Diagnostic;
+    return {field("severity", &R::severity, "`note`, `warning` or `error`").reading([](const Json& json, R& r) {
+                r.severity = severity_from(json.get<std::string>());
+            }),
+            field("kind", &R::kind, "shared by diagnostics of one kind"), field("text", &R::text, "the diagnostic")};
+}
+
 namespace flight {
 
 Fields<PhaseStatistics> record_fields(const PhaseStatistics*) {
@@ -113,6 +121,7 @@ Json json_of(const mechanical::MeasuredFlight& flight, std::size_t sortie) {
     }
     return {{"flight", flight.samples.flight},
             {"sortie", sortie},
+            {"pack_voltage_v", OptionalNumber::write(flight.samples.pack_voltage_v)},
             {"phases", std::move(phases)},
             {"motion", record_json(flight.motion)}};
 }
@@ -131,6 +140,7 @@ void read_measured(const Json& json, mechanical::MeasuredFlights& measured) {
         auto& flight = measured.flights.emplace_back();
         stored.at("flight").get_to(flight.samples.flight);
         JsonType<std::size_t>::read(stored.at("sortie"), measured.sorties.emplace_back());
+        OptionalNumber::read(stored.at("pack_voltage_v"), flight.samples.pack_voltage_v);
         for (const auto phase : flight::all_phases) {
             const auto of_phase = stored.at("phases").find(std::string(to_string(phase)));
             if (of_phase == stored.at("phases").end()) continue;
@@ -189,7 +199,7 @@ Fields<FlightRecord> record_fields(const FlightRecord*) {
         field("current_origin", &R::current_origin),
         field("phases", &R::phases),
         field("circuits", &R::circuits),
-        field("warnings", &R::warnings),
+        field("diagnostics", &R::diagnostics),
         field("power_faults", &R::power_faults),
         field("lacks_power", &R::no_power_reason),
         field("why_not_fitted", &R::not_fitted_reason),
@@ -215,7 +225,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.content = content_of(loaded.series);
     record.power_source = data.power_w.source;
     record.current_origin = to_string(data.current_origin);
-    record.warnings = loaded.warnings;
+    record.diagnostics = loaded.diagnostics;
     record.power_faults = loaded.power.power_faults;
     record.no_power_reason = loaded.lacks_power;
     if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(data, phases, 0);
@@ -233,6 +243,11 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
 FlightAircraft aircraft_of(const FlightRecord& record) {
     return {record.flight, record.aircraft_id,    record.aircraft_name,
             record.kind,   record.pack_voltage_v, record.cruise_power_w};
+}
+
+std::string reason_without_log(const FlightRecord& record) {
+    const auto path = record.log + ": ";
+    return record.error.starts_with(path) ? record.error.substr(path.size()) : record.error;
 }
 
 std::string to_json_text(const FlightRecord& record) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "batch/aircraft.h"
 #include "flight/flight_identity.h"
 #include "flight/load_flight.h"
@@ -11,6 +12,10 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace flightwatt {
+Fields<Diagnostic> record_fields(const Diagnostic*);
+}
 
 namespace flightwatt::flight {
 Fields<PhaseStatistics> record_fields(const PhaseStatistics*);
@@ -52,12 +57,12 @@ struct FlightRecord {
     std::string current_origin;  ///< see CurrentOrigin
     std::vector<RecordedPhase> phases;
     std::vector<flight::CircuitShare> circuits;  ///< see flight::circuit_shares
-    std::vector<std::string> warnings;
-    std::vector<std::string> power_faults;  ///< see PowerReport
-    std::string no_power_reason;            ///< empty: power was measured
-    std::string not_fitted_reason;          ///< see LogFile
-    mechanical::MeasuredFlights measured;   ///< of every complete phase
-    flight::FlightContent content;          ///< to find duplicates
+    Diagnostics diagnostics;                     ///< without the flight
+    std::vector<std::string> power_faults;       ///< see PowerReport
+    std::string no_power_reason;                 ///< empty: power was measured
+    std::string not_fitted_reason;               ///< see LogFile
+    mechanical::MeasuredFlights measured;        ///< of every complete phase
+    flight::FlightContent content;               ///< to find duplicates
 };
 
 Fields<RecordedPhase> record_fields(const RecordedPhase*);
@@ -67,6 +72,9 @@ Fields<FlightRecord> record_fields(const FlightRecord*);
 FlightRecord record_of(const flight::LoadedFlight& loaded);
 
 FlightAircraft aircraft_of(const FlightRecord& record);
+
+/// Why a log was rejected, without its path.
+std::string reason_without_log(const FlightRecord& record);
 
 /// The record as JSON with a seal, the fingerprint of its text, and back; std::nullopt for a record of another version
 /// or one that was changed.

@@ -65,7 +65,8 @@ std::vector<std::string> cells_of(const BatchFlight& flight, const std::string& 
     const auto of_power = [&](const std::string& cell) { return has_power ? cell : "-"; };
     cells.insert(cells.end(), {of_power(fixed(row.energy_wh, 3)), row.has_counter ? fixed(row.counter_wh, 3) : "-",
                                fmt::format("{}", row.samples), of_power(fmt::format("{}", row.gaps)),
-                               of_power(fixed(row.max_gap_s, 1)), fmt::format("{}", flight.record.warnings.size()),
+                               of_power(fixed(row.max_gap_s, 1)),
+                               fmt::format("{}", texts_of(flight.record.diagnostics, Severity::warning).size()),
                                !has_power                    ? "no power"
                                : flight.is_of_other_aircraft ? "other aircraft"
                                                              : fmt::format("{} of 3", fitted)});

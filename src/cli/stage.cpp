@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "cli/screen/diagnostic_lines.h"
 #include "cli/terminal.h"
 
 #include <cerrno>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <iostream>
 #include <new>
+#include <utility>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fcntl.h>
@@ -38,14 +40,26 @@ bool reader_has_left = false;
 /// --quiet was given.
 bool is_quiet = false;
 
-/// Diagnostics that cannot be written (closed, full disk) are dropped.
-void print_diagnostic(const std::string& line) { std::fwrite(line.data(), 1, line.size(), stderr); }
+/// Prints a message for people, on a terminal in lines of its width, elsewhere in one line behind the program.
+void print_message(const std::string& program, const std::string& text) {
+    auto message = one_line(text);
+    message = ::isatty(STDERR_FILENO) == 1 ? wrapped(message, terminal_columns(stderr)) : program + ": " + message;
+    print_lines(message + '\n');
+}
 
 /// Prints an error with its location; returns the exit code.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto prefix = where.empty() ? "" : where + ": ";
-    print_diagnostic(fmt::format("{}: {}error: {}\n", program, one_line(prefix), one_line(truncated(message))));
+    print_message(program, fmt::format("{}error: {}", prefix, truncated(message)));
     return code;
+}
+
+/// Prints and clears what the call collected.
+void print_diagnostics(const StageCall& call) {
+    const auto diagnostics = std::exchange(*call.diagnostics, {});
+    for (const auto& line : diagnostic_lines(diagnostics, call.notes)) print_message(call.program, line);
+    const auto notes = call.notes || is_quiet ? "" : notes_line(diagnostics);
+    if (!notes.empty()) print_message(call.program, notes);
 }
 
 /// A standard stream that was closed before the start would become the first file that is opened, a log or a result.
@@ -140,6 +154,7 @@ struct CommonOptions {
     bool json_usage = false;
     bool json_schema = false;
     bool quiet = false;
+    bool notes = false;
     bool help = false;
     bool help_all = false;
     bool version = false;
@@ -156,6 +171,7 @@ void add_common_options(StageDefinition& stage, CommonOptions& common) {
     if (stage.uses_threads)
         options.add("jobs,j", common.jobs, {.value = "N", .max = max_jobs}, "threads; 0: one for each core");
     options.add("quiet,q", common.quiet, "print no notes and no progress; warnings and errors remain");
+    options.add("notes", common.notes, "list all notes, and each warning of each flight", {.excludes = {"quiet"}});
     options.add("help,h", common.help, "show this help");
     options.add("help-all", common.help_all, "show this help, with expert options");
     options.add("json-usage", common.json_usage, "print inputs and options of this stage as JSON");
@@ -239,6 +255,8 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     call.inputs = given.inputs;
     call.json = common.json;
     call.wide = common.wide;
+    call.notes = common.notes;
+    call.is_live = stage.is_live;
     call.output = common.output == "-" ? std::nullopt : common.output;
     is_quiet = common.quiet;
     if (common.quiet) hide_progress();
@@ -250,7 +268,15 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
         input = standard_input->file();
     }
     register_files(call, stage.options, given);
-    const int code = body(call);
+    int code = ok;
+    try {
+        code = body(call);
+        flush_standard_output();  // the result comes first
+    } catch (...) {
+        print_diagnostics(call);
+        throw;
+    }
+    print_diagnostics(call);
     call.inputs = given.inputs;  // as they were typed
     if (code == ok || code == input_rejected) note_written(stage, call);
     return code == ok && !call.skipped->empty() ? input_rejected : code;
@@ -300,7 +326,7 @@ int run_stage(int argc, char** argv, StageDefinition definition, const StageBody
 }
 
 void skip_input(const StageCall& call, const std::string& file, const InputError& error) {
-    failed(input_rejected, call.program, reason_of(error) + " (skipped)", to_string(error.where()));
+    add_diagnostic(call, {Severity::error, "skipped", reason_of(error) + " (skipped)", to_string(error.where())});
     call.skipped->push_back({file, reason_of(error)});
 }
 
@@ -355,15 +381,20 @@ std::string shell_quoted(std::string_view file) {
     return quoted + "'";
 }
 
+void add_diagnostic(const StageCall& call, Diagnostic diagnostic) {
+    call.diagnostics->push_back(std::move(diagnostic));
+    if (call.is_live) print_diagnostics(call);
+}
+
 void warn(const StageCall& call, std::string_view message) {
-    print_diagnostic(fmt::format("{}: warning: {}\n", call.program, one_line(message)));
+    add_diagnostic(call, {.severity = Severity::warning, .text = std::string(message)});
 }
 
 void note(const StageCall& call, std::string_view message) {
     if (is_quiet) return;
-    print_diagnostic(fmt::format("{}: {}\n", call.program, one_line(message)));
+    print_message(call.program, std::string(message));
 }
 
-void print_lines(std::string_view lines) { print_diagnostic(std::string(lines)); }
+void print_lines(std::string_view lines) { std::fwrite(lines.data(), 1, lines.size(), stderr); }
 
 }  // namespace flightwatt::cli

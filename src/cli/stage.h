@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "cli/options.h"
@@ -21,7 +22,8 @@ enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejecte
 
 struct StageCall;
 
-/// Name and interface of a stage, beyond the options that every stage has (--help, --version, --json, --output, --quiet).
+/// Name and interface of a stage, beyond the options that every stage has (--help, --version, --json, --output, --quiet,
+/// --notes).
 struct StageDefinition {
     std::string name;                        ///< "fit"; the program is flightwatt-fit
     std::string arguments;                   ///< shown in the usage line: "FLIGHT..."
@@ -34,6 +36,7 @@ struct StageDefinition {
     bool reads_logs = false;          ///< its inputs are logs: - is the standard input
     bool uses_threads = false;        ///< then --jobs is an option
     bool shows_table = false;         ///< on a terminal: then --wide is an option
+    bool is_live = false;             ///< runs for hours: warnings are shown at once, and not after the result
     /// What can follow on a result in --output ({}), with the input ({in}): "flightwatt simulate {}"; or empty.
     std::function<std::string(const StageCall&)> next = nullptr;
     std::string output_value = "FILE";
@@ -54,9 +57,13 @@ struct StageCall {
     std::vector<std::string> inputs;
     bool json = false;
     bool wide = false;
+    bool notes = false;    ///< each diagnostic is shown, also what an earlier stage has shown
+    bool is_live = false;  ///< see StageDefinition
     std::optional<std::string> output;
     /// See skip_input; shared by copies of the call.
     std::shared_ptr<std::vector<SkippedInput>> skipped = std::make_shared<std::vector<SkippedInput>>();
+    /// Shown after the result; shared by copies of the call.
+    std::shared_ptr<Diagnostics> diagnostics = std::make_shared<Diagnostics>();
 
     bool has(const std::string& option) const { return given.contains(option); }
 };
@@ -67,8 +74,8 @@ using StageBody = std::function<int(const StageCall&)>;
 /// --json-usage.
 int run_stage(int argc, char** argv, StageDefinition definition, const StageBody& body);
 
-/// Names an input that cannot be used, on the standard error, and continues with the others. The exit code of the stage is
-/// then input_rejected instead of ok.
+/// An input that cannot be used, an error of the kind "skipped"; the others are used. The exit code of the stage is then
+/// input_rejected instead of ok.
 void skip_input(const StageCall& call, const std::string& file, const InputError& error);
 
 /// The exit code of the body. An exception becomes one line on the standard error and its exit code; a standard
@@ -119,11 +126,17 @@ Json document_schema() {
     return json_schema({record_schema<Forms>()...});
 }
 
-/// A line on the standard error: "flightwatt-fit: warning: ...".
+/// Collects a diagnostic, which is shown after the result.
+void add_diagnostic(const StageCall& call, Diagnostic diagnostic);
+
+/// Collects a warning that belongs to no flight and no kind.
 void warn(const StageCall& call, std::string_view message);
+
+/// A line about the result on the standard error, at once: "flightwatt-fit: ...", without the program on a terminal.
 void note(const StageCall& call, std::string_view message);
 
-/// Lines on the standard error, as they are: a table, or commands to paste.
+/// Lines on the standard error, as they are: a table, or commands to paste. What cannot be written (closed, full disk) is
+/// dropped.
 void print_lines(std::string_view lines);
 
 }  // namespace flightwatt::cli

@@ -9,18 +9,6 @@
 #include <fmt/ranges.h>
 
 namespace flightwatt::flight {
-namespace {
-
-/// What the .log or the program assumed of the messages' layout and units; empty without an assumption.
-std::string assumed_definitions_text(const FlightInfo& info) {
-    if (info.assumed_definitions.empty()) return "";
-    std::vector<std::string> texts;
-    for (const auto& definition : info.assumed_definitions) texts.push_back(definition.text);
-    return fmt::format("{}: {}", info.log_is_missing ? "no .log: message layouts assumed" : "units in the .log",
-                       fmt::join(texts, ", "));
-}
-
-}  // namespace
 
 std::span<const TrackMember> track_members() {
     using D = FlightData;
@@ -77,27 +65,39 @@ std::map<std::string, std::string> track_sources(const FlightData& data) {
     return sources;
 }
 
-std::vector<std::string> selection_warnings(const FlightData& data) {
-    std::vector<std::string> warnings;
-    if (auto assumed = assumed_definitions_text(data); !assumed.empty()) warnings.push_back(std::move(assumed));
-    if (data.current_origin == CurrentOrigin::throttle) {
-        warnings.emplace_back(
-            "the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: the current is computed from the "
-            "throttle, so a power model fitted to it is circular");
-    }
-    const auto add = [&](const std::vector<std::string>& notes) {
-        warnings.insert(warnings.end(), notes.begin(), notes.end());
+Diagnostics selection_diagnostics(const FlightData& data) {
+    using enum Severity;
+    Diagnostics found;
+    const auto add = [&](Severity severity, const std::string& kind, const std::vector<std::string>& texts) {
+        append(found, severity, kind, data.flight, texts);
     };
+    if (!data.assumed_definitions.empty()) {
+        std::vector<std::string> assumed;
+        for (const auto& definition : data.assumed_definitions) assumed.push_back(definition.text);
+        const auto* what = data.log_is_missing ? "no .log: message layouts assumed" : "units in the .log";
+        add(warning, what, {fmt::format("{}: {}", what, fmt::join(assumed, ", "))});
+    }
+    if (data.current_origin == CurrentOrigin::throttle)
+        add(warning, "current computed from the throttle",
+            {"the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: the current is computed from the "
+             "throttle, so a power model fitted to it is circular"});
     if (!data.power_w.empty())  // else see no_power_reason
         for (const auto& reason : data.power_w.not_chosen)
-            warnings.push_back(fmt::format("{}: power is that of {}", reason, data.power_w.source));
-    add(data.power_w.notes);
-    for (const auto& [name, member] : track_members())
-        if (member != &FlightData::power_w) add((data.*member).notes);
-    for (const auto& skip : data.skipped) warnings.push_back(describe(skip));
-    if (data.log_is_missing && data.assumed_definitions.empty()) warnings.emplace_back("no .log");
-    add(data.notes);
-    return warnings;
+            add(warning, "unusable source of power",
+                {fmt::format("{}: power is that of {}", reason, data.power_w.source)});
+    add(warning, data.circuits.empty() ? "corrected power" : "power of the batteries", data.power_w.notes);
+    for (const auto& [name, member] : track_members()) {
+        const bool moves_phases = member == &FlightData::altitude_m || member == &FlightData::throttle_percent;
+        if (member != &FlightData::power_w)
+            add(moves_phases ? warning : note, moves_phases ? "corrected altitude or throttle" : "corrected tracks",
+                (data.*member).notes);
+    }
+    for (const auto& skip : data.skipped)
+        is_partial_record(skip) ? add(note, "cut at power-off", {describe(skip)})
+                                : add(warning, "damaged log", {describe(skip)});
+    if (data.log_is_missing && data.assumed_definitions.empty()) add(note, "no .log", {"no .log"});
+    add(note, "reading of the log", data.notes);
+    return found;
 }
 
 FlightData of_circuit(FlightData data, std::size_t number) {

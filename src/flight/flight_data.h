@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "flight/flight_series.h"
 
 #include <cstddef>
@@ -90,8 +91,8 @@ std::optional<double> last_value(const Track& track);
 /// Source of each track that the flight has, by the name of the track.
 std::map<std::string, std::string> track_sources(const FlightData& data);
 
-/// Warnings about the log and the choice of its tracks, for the user.
-std::vector<std::string> selection_warnings(const FlightData& data);
+/// Findings about the log and the choice of its tracks: assumed layouts, rejected sources, removed samples, skipped lines.
+Diagnostics selection_diagnostics(const FlightData& data);
 
 /// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if it has no such
 /// circuit.

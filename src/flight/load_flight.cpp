@@ -63,21 +63,30 @@ void limit_work(const FlightData& data, const FlightPhases& phases) {
                      "is it the log of one flight? Split it, or select a sortie with --sortie N");
 }
 
-std::vector<std::string> all_warnings(const FlightData& data, const FlightPhases& phases,
-                                      const FlightAssessment& assessment) {
-    auto warnings = selection_warnings(data);
+/// All diagnostics, of one flight and one log each.
+Diagnostics all_diagnostics(const FlightData& data, const FlightPhases& phases, const FlightAssessment& assessment) {
+    const auto& flight = data.flight;
+    auto found = selection_diagnostics(data);
     if (is_simulated(data.aircraft_name))
-        warnings.push_back(fmt::format("a simulator flew it ({}): its power is simulated too", data.aircraft_name));
+        found.push_back({Severity::warning, "flown by a simulator",
+                         fmt::format("a simulator flew it ({}): its power is simulated too", data.aircraft_name),
+                         flight});
     if (!assessment.lacks_power.empty())
-        warnings.push_back(assessment.lacks_power + ": the energy of its phases is unknown");
-    for (const auto* more : {&phases.warnings, &assessment.power.warnings})
-        warnings.insert(warnings.end(), more->begin(), more->end());
+        found.push_back({Severity::warning, "no measured power",
+                         assessment.lacks_power + ": the energy of its phases is unknown", flight});
+    append(found, Severity::warning, "uncertain phases", flight, phases.warnings);
+    for (auto finding : assessment.power.warnings) {
+        finding.flight = flight;
+        found.push_back(std::move(finding));
+    }
     const PowerStatistics power(data);
     for (const auto& sortie : phases.sorties)
         if (const double lost_s = power.between(sortie.start_s(), sortie.end_s()).lost_s; lost_s > 0.0)
-            warnings.push_back(
-                fmt::format("damage hides the power of {:.1f} s in flight: its energy is not counted", lost_s));
-    return warnings;
+            found.push_back(
+                {Severity::warning, "power lost by damage",
+                 fmt::format("damage hides the power of {:.1f} s in flight: its energy is not counted", lost_s),
+                 flight});
+    return found;
 }
 
 std::string exclusion_of(const FlightInfo& series, const FlightAssessment& assessment, const LoadOptions& options) {
@@ -93,8 +102,11 @@ void warn_of_missing_ends(LoadedFlight& loaded) {
         const auto& first = sortie.phases.front();
         const auto& last = sortie.phases.back();
         const auto warn = [&](const char* what, double time_s) {
-            loaded.warnings.push_back(fmt::format(
-                "the log {} in the air, at {:.0f} s: the energy is only that of the logged part", what, time_s));
+            loaded.diagnostics.push_back(
+                {Severity::warning, "begins or ends in the air",
+                 fmt::format("the log {} in the air, at {:.0f} s: the energy is only that of the logged part", what,
+                             time_s),
+                 loaded.series.flight});
         };
         if (first.phase != Phase::takeoff || !first.complete) warn("begins", sortie.start_s());
         if (last.phase != Phase::landing || !last.complete) warn("ends", sortie.end_s());
@@ -171,7 +183,7 @@ FlightAssessment assess_flight(const FlightData& data, const FlightPhases& phase
     if (!has_power) assessment.lacks_power = "no measured power" + parenthesised(no_power_reason(data));
     assessment.power.origin = data.current_origin;
     if (has_altitude && has_power) assessment.power = check_power_record(data, phases, options);
-    assessment.warnings = all_warnings(data, phases, assessment);
+    assessment.diagnostics = all_diagnostics(data, phases, assessment);
     return assessment;
 }
 
@@ -199,7 +211,7 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
     if (options.correct_idle_offset && loaded.lacks_power.empty()) {
         correct_idle_offset(series, data, loaded.power.idle);
         data = select_tracks(series);
-        loaded.warnings = all_warnings(data, loaded.phases, assessment);
+        loaded.diagnostics = all_diagnostics(data, loaded.phases, assessment);
     }
     loaded.exclusion = exclusion_of(data, assessment, options);
     loaded.series = std::move(series);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "flight/flight_data.h"
 #include "flight/flight_file.h"
 #include "flight/flight_series.h"
@@ -41,9 +42,9 @@ struct LoadOptions {
 
 /// Quality of a segmented series.
 struct FlightAssessment {
-    PowerReport power;                  ///< as measured, before any correction
-    std::string lacks_power = {};       ///< why there is no measured power; empty if there is
-    std::vector<std::string> warnings;  ///< of the series, the segmentation and the power
+    PowerReport power;             ///< as measured, before any correction
+    std::string lacks_power = {};  ///< why there is no measured power; empty if there is
+    Diagnostics diagnostics = {};  ///< of the series, the segmentation and the power
 };
 
 struct LoadedFlight : FlightAssessment {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 
@@ -33,7 +34,7 @@ struct PowerReport {
     std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
     std::vector<SampleGap> gaps;                   ///< within the sorties
     std::vector<std::string> power_faults;         ///< impossible values: the record is not fitted
-    std::vector<std::string> warnings;             ///< suspect, but possible values
+    Diagnostics warnings;                          ///< suspect, but possible values
 };
 
 /// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown; the

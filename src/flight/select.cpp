@@ -46,6 +46,7 @@ void choose_batteries(const FlightSeries& series, BatteryTracks found, FlightDat
         static_cast<Track&>(power) = {};
     }
     data.power_w = std::move(power);
+    if (!found.note.empty()) data.notes.push_back(std::move(found.note));
     data.energy_wh = cleaned_of_batteries(series, found.energy_wh);
     for (auto& circuit : found.circuits) {
         circuit.power_w = cleaned_of_batteries(series, circuit.power_w);

@@ -19,7 +19,7 @@ using mechanical::FlightProgress;
 using path::PathFix;
 
 void warn_of_extrapolation(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
-                           Diagnostics& remarks) {
+                           Remarks& remarks) {
     if (is_within_flown_range(model, motion)) return;
     const auto& speeds = model.airspeed_m_per_s;
     remarks.warnings.push_back(
@@ -30,7 +30,7 @@ void warn_of_extrapolation(const mechanical::PhysicalModel& model, const mechani
 }
 
 /// `level`: relative deviation of the flight's power from the model.
-void warn_of_level(const mechanical::PhysicalModel& model, double level, Diagnostics& remarks) {
+void warn_of_level(const mechanical::PhysicalModel& model, double level, Remarks& remarks) {
     constexpr double max_sds = 3.0;
     const double sd = model.level_sd.value_or(0.0);
     if (std::abs(level) <= max_sds * sd) return;
@@ -54,7 +54,7 @@ double seconds_on_path(const PredictionInput& input, const FlightProgress& flown
 
 /// A cruise that continues beyond the mission's, at its mean power until now.
 mechanical::RemainingCruise predict_overtime(const FlightProgress& flown, double overtime_s, Prediction& prediction,
-                                             Diagnostics& remarks) {
+                                             Remarks& remarks) {
     mechanical::RemainingCruise rest;
     rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
     rest.remaining_mean_w = rest.measured_w;
@@ -66,7 +66,7 @@ mechanical::RemainingCruise predict_overtime(const FlightProgress& flown, double
     return rest;
 }
 
-void remark_on(const PathFix& fix, double cruise_s, Diagnostics& remarks) {
+void remark_on(const PathFix& fix, double cruise_s, Remarks& remarks) {
     if (!fix.path_time_s) {
         remarks.warnings.emplace_back(
             "the positions of this flight are not on the mission's path: its position on the path is by the time since "
@@ -88,7 +88,7 @@ void remark_on(const PathFix& fix, double cruise_s, Diagnostics& remarks) {
 
 mechanical::RemainingCruise predict_along_path(const PredictionInput& input, const FlightProgress& flown,
                                                const std::optional<PathFix>& fix, Prediction& prediction,
-                                               Diagnostics& remarks) {
+                                               Remarks& remarks) {
     prediction.on_path_s = seconds_on_path(input, flown, fix);
     prediction.is_from_position = fix && fix->path_time_s;
     const double path_s = input.path->flown().duration_s;
@@ -126,7 +126,7 @@ mechanical::RemainingCruise predict_phases(const PredictionInput& input, const F
 
 mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const FlightProgress& flown,
                                            const std::optional<PathFix>& fix, Prediction& prediction,
-                                           Diagnostics& remarks) {
+                                           Remarks& remarks) {
     prediction.uses_physical_model = input.path || input.motion;
     if (prediction.uses_physical_model && !flown.motion.no_bins_reason.empty())
         remarks.warnings.push_back(
@@ -144,7 +144,7 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
 
 /// From the whole record of the flight so far.
 BatteryPrediction predict_battery(const PredictionInput& input, const flight::FlightData& data,
-                                  const Prediction& prediction, Diagnostics& remarks) {
+                                  const Prediction& prediction, Remarks& remarks) {
     for (const auto& warning : battery_warnings(*input.battery))
         remarks.warnings.push_back(fmt::format("{}: {}", input.battery_file, warning));
     const auto records = battery::discharge_records(data);
@@ -253,7 +253,7 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
 }
 
 Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightData& data,
-                          Diagnostics& remarks) {
+                          Remarks& remarks) {
     std::optional<PathFix> fix;
     if (input.path && !input.remaining_s) fix = locate_on_path(*input.path, data, flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(input, flown, fix, remarks);
@@ -262,7 +262,7 @@ Prediction predict_flight(const PredictionInput& input, const FlightProgress& fl
 }
 
 Prediction predict_energy(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix,
-                          Diagnostics& remarks) {
+                          Remarks& remarks) {
     Prediction prediction;
     prediction.flown = flown;
     prediction.cruise = predict_cruise(input, flown, fix, prediction, remarks);

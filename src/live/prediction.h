@@ -60,7 +60,7 @@ struct Prediction {
 };
 
 /// Messages to the user about a prediction.
-struct Diagnostics {
+struct Remarks {
     std::vector<std::string> warnings;
     std::vector<std::string> notes;
 };
@@ -82,11 +82,11 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
 /// landing from now. Throws NoResultError where more charge was drawn than available, UsageError for a remaining time
 /// longer than the path, and as mechanical::predict_remaining_flight and battery::discharge_records.
 Prediction predict_flight(const PredictionInput& input, const mechanical::FlightProgress& flown,
-                          const flight::FlightData& data, Diagnostics& remarks);
+                          const flight::FlightData& data, Remarks& remarks);
 
 /// As predict_flight, without the battery. `fix`: position on the path; none: by the time since the cruise began.
 Prediction predict_energy(const PredictionInput& input, const mechanical::FlightProgress& flown,
-                          const std::optional<path::PathFix>& fix, Diagnostics& remarks);
+                          const std::optional<path::PathFix>& fix, Remarks& remarks);
 
 /// Expected loads of the remaining cruise and the landing, times `factor`.
 std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double factor = 1.0);

@@ -110,7 +110,7 @@ FlightProgress progress_after_lift_off(const flight::FlightSeries& series, const
     const auto& first = sortie.phases.front();
     const double until_s = first.start.time_s + since_s;
     const auto refuse = [&](std::string_view reason) {
-        throw NoResultError(fmt::format("{}: {:.0f} s after lift-off {}", series.flight, since_s, reason));
+        throw NoResultError(fmt::format("{:.0f} s after lift-off {}", since_s, reason));
     };
     if (first.phase != flight::Phase::takeoff || !first.complete) refuse("is unknown: its take-off is not in the log");
     if (until_s >= sortie.end_s()) refuse("the aircraft has landed, or its log has ended");

@@ -1,6 +1,7 @@
 #include "mechanical/measured_flight.h"
 
 #include "base/piecewise_linear.h"
+#include "base/statistics.h"
 #include "flight/flight_data.h"
 
 #include <algorithm>
@@ -73,13 +74,23 @@ std::string sortie_name(const std::string& flight, std::size_t sortie) {
     return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
 }
 
+std::optional<double> pack_voltage_v(const flight::FlightData& data) {
+    constexpr double exceeded_by = 0.01;
+    auto values = data.voltage_v.value;
+    if (values.empty()) return std::nullopt;
+    std::ranges::sort(values);
+    return quantile(values, 1.0 - exceeded_by);
+}
+
 MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases,
                                 std::size_t needed_samples) {
     MeasuredFlights measured;
+    const auto voltage_v = pack_voltage_v(data);
     const flight::PowerStatistics statistics_of_power(data);
     for (const auto& sortie : phases.sorties) {
         MeasuredFlight flight;
         flight.samples.flight = sortie_name(data.flight, sortie.number);
+        flight.samples.pack_voltage_v = voltage_v;
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
             auto samples = samples_of(data.power_w, span, flight.samples.flight);

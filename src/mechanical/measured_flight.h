@@ -44,6 +44,9 @@ std::string to_string(const Exclusion& exclusion);
 /// The name of a sortie: NAME, and NAME#2 from the second on.
 std::string sortie_name(const std::string& flight, std::size_t sortie);
 
+/// The voltage that 1 % of the log's samples exceed: single samples may be damaged.
+std::optional<double> pack_voltage_v(const flight::FlightData& data);
+
 /// The flights of one log, a sortie each: power samples of complete phases on their own normalised time, without those
 /// at the ends that have the neighbouring phase's power (PhaseSamples::edge_samples), and the measured energy of all
 /// samples. Excluded are phases that are incomplete, have too few samples, or begin or end in a gap longer than a

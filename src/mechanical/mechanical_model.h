@@ -139,6 +139,7 @@ struct MechanicalModel {
     std::vector<FlightContribution> flights;
     std::optional<PhysicalModel> physical = {};      ///< power by motion; absent unless fitted
     std::optional<ModelValidation> validation = {};  ///< absent in files of fit, and of earlier versions
+    std::optional<double> pack_voltage_v = {};       ///< highest of the flights' packs; absent if none was measured
 };
 
 /// The model with the power that missions use: each phase's mean power, of equally weighted flights, if its validation

@@ -247,6 +247,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     fields.text("name", model.name);
     if (fields.has("description", true)) fields.text("description", model.description);
     if (fields.has("weighting", true)) fields.text("weighting", model.weighting);
+    fields.optional_real("pack_voltage_v", model.pack_voltage_v, more_than(0.0));
     for (const auto phase : flight::all_phases) {
         fields.line("");
         fields.table(to_string(phase), model.phases[phase], list_phase, TomlLayout::section);

@@ -96,6 +96,7 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     model.description = described(options, flights.size());
     model.weighting = to_string(options.weighting);
     for (const auto& name : names) model.flights.push_back({name, {}});
+    for (const auto& flight : flights) model.pack_voltage_v = std::max(model.pack_voltage_v, flight.pack_voltage_v);
 
     for (const auto phase : flight::all_phases) {
         parts.samples[phase] = samples_of_phase(flights, phase);

@@ -41,6 +41,7 @@ double median_gap(const std::vector<double>& tau);
 struct FlightSamples {
     std::string flight;
     flight::PerPhase<std::optional<PhaseSamples>> phases;
+    std::optional<double> pack_voltage_v = {};  ///< the highest of the log, but for 1 % of the samples
 };
 
 /// Samples at the ends of a phase whose power is the neighbouring phase's.

@@ -84,8 +84,10 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     load.keep = fit.keep;
     for (auto& [record, series, phases, damage] : batch::read_stored_flights(out)) {
         if (fit.other_aircraft.contains(record.flight)) continue;
-        const auto& rejected = damage.empty() ? record.error : damage;
-        ReportFlight flight{record.flight, record.log, record.accepted ? "" : rejected, {}, {}, record.warnings, {}};
+        const auto& rejected = damage.empty() ? reason_without_log(record) : damage;
+        ReportFlight flight{record.flight, record.log, record.accepted ? "" : rejected};
+        for (const auto& diagnostic : record.diagnostics)
+            (diagnostic.severity == Severity::note ? flight.notes : flight.warnings).push_back(diagnostic.text);
         if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
             flight.aircraft = aircraft_of(record);

@@ -15,14 +15,15 @@ namespace flightwatt::report {
 /// One log of a batch.
 struct ReportFlight {
     std::string name;
-    std::string log;              ///< its path
-    std::string rejected;         ///< the reason; empty if accepted
-    flight::FlightData data;      ///< of an accepted log
-    flight::FlightPhases phases;  ///< with their edges
-    std::vector<std::string> warnings;
-    std::vector<std::string> exclusions;  ///< parts outside of the fit, with reasons
-    std::string unusable_power = {};      ///< reason for not using its power record; empty if used
-    batch::FlightAircraft aircraft = {};  ///< of an accepted flight
+    std::string log;                           ///< its path
+    std::string rejected;                      ///< the reason; empty if accepted
+    flight::FlightData data = {};              ///< of an accepted log
+    flight::FlightPhases phases = {};          ///< with their edges
+    std::vector<std::string> warnings = {};    ///< and errors
+    std::vector<std::string> notes = {};       ///< harmless diagnostics
+    std::vector<std::string> exclusions = {};  ///< parts outside of the fit, with reasons
+    std::string unusable_power = {};           ///< reason for not using its power record; empty if used
+    batch::FlightAircraft aircraft = {};       ///< of an accepted flight
 };
 
 /// Use of the flight in the fit: "all", "in part" or "no".

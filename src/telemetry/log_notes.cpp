@@ -1,6 +1,7 @@
 #include "telemetry/log_notes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -39,6 +40,13 @@ std::string_view to_string(SkippedLines::Unit unit) {
             break;
     }
     return "line";
+}
+
+bool is_partial_record(const SkippedLines& skipped) {
+    constexpr std::size_t block_bytes = 4096;
+    const auto most = skipped.unit == SkippedLines::Unit::byte ? block_bytes : 1;
+    return skipped.count() <= most &&
+           std::ranges::all_of(skipped.lines, [](const auto& at) { return std::isinf(at.time_s); });
 }
 
 std::string describe(const SkippedLines& skipped) {

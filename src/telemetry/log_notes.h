@@ -39,6 +39,10 @@ struct SkippedLines {
 
 std::string_view to_string(SkippedLines::Unit unit);
 
+/// Whether these are all at the end, as much as a log that is cut at power-off has: a line, a frame, or bytes of one
+/// block of a card behind the last message.
+bool is_partial_record(const SkippedLines& skipped);
+
 /// "ENERGY: another number of fields than the .log defines: 3 lines, first at line 17"; of a binary log "damaged: 3
 /// bytes, first at byte 1201".
 std::string describe(const SkippedLines& skipped);

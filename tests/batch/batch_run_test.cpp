@@ -349,7 +349,8 @@ TEST(BatchOfRecordings, HasAFlightOfEach) {
     ASSERT_EQ(flights.size(), 3U);
     EXPECT_EQ(flights[1].record.flight, "log@2");
     EXPECT_EQ(flights[1].selection.flights.at(0).flight, "log@2");
-    EXPECT_THAT(flights[0].record.warnings, testing::Contains(HasSubstr("recording 3 is not used: has no flight in")));
+    EXPECT_THAT(texts_of(flights[0].record.diagnostics),
+                testing::Contains(HasSubstr("recording 3 is not used: has no flight in")));
     EXPECT_EQ(totals_of(flights).rejected_of_this_run, 0U);
     EXPECT_THAT(done_anew(batch(in, out)), IsEmpty());
     const auto stored = read_stored_flights(out);

@@ -48,7 +48,7 @@ FlightRecord full_record() {
     measured.motion = test::made_up_motions(1, 3, {}, 1).front();
     measured.motion.flight = record.flight;
     record.measured.sorties = {0};
-    record.warnings = {"a \"quoted\" one", "another"};
+    record.diagnostics = {{Severity::note, "a kind", "a \"quoted\" one"}, {Severity::warning, "another", "another"}};
     return record;
 }
 
@@ -69,7 +69,7 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_EQ(read->phases[1].sortie, 2U);
     EXPECT_EQ(read->phases[1].statistics.counter_energy_wh, 0.7);
     EXPECT_EQ(read->phases[1].statistics.samples, 25U);
-    EXPECT_THAT(read->warnings, testing::ElementsAre("a \"quoted\" one", "another"));
+    EXPECT_EQ(read->diagnostics, full_record().diagnostics);
     const auto& motion = read->measured.flights.at(0).motion;
     EXPECT_EQ(motion.flight, "20_07_03__12_17_45");
     EXPECT_TRUE(motion.bank_measured);

@@ -182,7 +182,7 @@ TEST(RunStage, KeepsDiagnosticsOnOneLine) {
         note(call, "three\tfour");
         return ok;
     });
-    EXPECT_EQ(notes.err, "flightwatt-trial: warning: one two\nflightwatt-trial: three four\n");
+    EXPECT_EQ(notes.err, "flightwatt-trial: three four\nflightwatt-trial: warning: one two\n");
     EXPECT_EQ(one_line("\xC3\xBC \xFF"), "\xC3\xBC \xFF");  // what is no control character stays
 }
 

@@ -52,7 +52,7 @@ TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {
     EXPECT_NEAR(flight.phases.sorties[0].end_s(), plain.sorties[0].end_s(), 1.0);
     EXPECT_EQ(flight.lacks_power, "no measured power (ENERGY.power is 0 throughout)");
     EXPECT_EQ(flight.exclusion, flight.lacks_power);
-    EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr(": the energy of its phases is unknown")));
+    EXPECT_THAT(texts_of(flight.diagnostics), testing::Contains(HasSubstr(": the energy of its phases is unknown")));
     EXPECT_THAT(phases_csv(flight.data, flight.phases), HasSubstr("\n1,takeoff,"));
     EXPECT_THAT(phases_csv(flight.data, flight.phases), HasSubstr(",,,,,,,true,")) << "empty, not 0";
     EXPECT_THAT(test::rejected([] { segment_and_check(unmeasured_flight(), {}); }), HasSubstr("has no measured power"));
@@ -77,7 +77,7 @@ TEST(LoadFlight, OfASeriesFileWithoutPowerIsTheSame) {
     const auto flight = segment_and_check(series, without_power());
     const auto reread = segment_and_check(again, without_power());
     EXPECT_EQ(phases_csv(reread.data, reread.phases), phases_csv(flight.data, flight.phases));
-    EXPECT_EQ(reread.warnings, flight.warnings);
+    EXPECT_EQ(reread.diagnostics, flight.diagnostics);
 }
 
 TEST(LoadFlight, ReadsACsvOfAltitudeAlone) {
@@ -154,7 +154,7 @@ CardAndText stored_on_card(const std::filesystem::path& data, test::LinkVersion 
 std::string everything_of(const std::filesystem::path& log) {
     const auto flight = load_flight(log);
     return fmt::format("{}\n{}\n{}", to_csv(flight.series), phases_csv(flight.data, flight.phases),
-                       fmt::join(flight.warnings, "\n"));
+                       fmt::join(texts_of(flight.diagnostics), "\n"));
 }
 
 TEST(LoadFlight, ComesToTheSameOnABinaryLogAndItsText) {
@@ -205,12 +205,13 @@ TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
         write_file_atomically(log.parent_path() / "x.log", definitions.substr(0, definitions.size() / 2));
         EXPECT_THROW(load_flight(log), InputError) << "damaged, and nothing else is named";
         const auto flight = load_flight(log, options);
-        EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr("x.log")));
-        EXPECT_THAT(flight.warnings, testing::Contains(HasSubstr("the definitions are those of " + sound.string())));
+        EXPECT_THAT(texts_of(flight.diagnostics), testing::Contains(HasSubstr("x.log")));
+        EXPECT_THAT(texts_of(flight.diagnostics),
+                    testing::Contains(HasSubstr("the definitions are those of " + sound.string())));
         EXPECT_EQ(flight.phases.sorties.size(), 1u);
     }
     write_file_atomically(made.card.parent_path() / "x.log", definitions);
-    EXPECT_EQ(load_flight(made.card, options).warnings, load_flight(made.card).warnings);
+    EXPECT_EQ(load_flight(made.card, options).diagnostics, load_flight(made.card).diagnostics);
 }
 
 }  // namespace

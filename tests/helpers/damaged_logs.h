@@ -52,7 +52,8 @@ inline double energy_in_flight_wh(const flight::LoadedFlight& loaded) {
 
 /// All warnings and faults, a line each.
 inline std::string said_of(const flight::LoadedFlight& loaded) {
-    return fmt::format("{}\n{}", fmt::join(loaded.warnings, "\n"), fmt::join(loaded.power.power_faults, "\n"));
+    return fmt::format("{}\n{}", fmt::join(texts_of(loaded.diagnostics), "\n"),
+                       fmt::join(loaded.power.power_faults, "\n"));
 }
 
 }  // namespace flightwatt::test

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace flightwatt::test {
@@ -54,11 +55,16 @@ inline flight::Sortie sortie_of(const flight::PowerRecord& record, double takeof
     return sortie;
 }
 
-inline flight::PowerReport found_in(flight::PowerRecord record, const std::vector<std::size_t>& at_rest = resting()) {
+struct FoundTexts {
+    std::vector<std::string> power_faults;
+    std::vector<std::string> warnings;
+};
+
+inline FoundTexts found_in(flight::PowerRecord record, const std::vector<std::size_t>& at_rest = resting()) {
     flight::PowerReport report;
     add_facts(record, at_rest);
     apply_power_rules(record, report);
-    return report;
+    return {report.power_faults, texts_of(report.warnings)};
 }
 
 }  // namespace flightwatt::test

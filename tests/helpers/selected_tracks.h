@@ -22,7 +22,7 @@ inline std::vector<double> sample_selected_track(const FlightSeries& series, std
 }
 
 inline std::vector<std::string> warnings_of(const FlightSeries& series) {
-    return selection_warnings(select_tracks(series));
+    return texts_of(selection_diagnostics(select_tracks(series)));
 }
 
 }  // namespace flightwatt::flight

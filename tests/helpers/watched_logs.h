@@ -55,7 +55,7 @@ inline void receive_all(live::LiveFlight& flight, const std::vector<live::Incomi
 inline live::Prediction predicted(const std::filesystem::path& log, double until_s,
                                   const live::PredictionInput& basis) {
     const auto series = truncate_series(flight::read_flight(log), until_s);
-    live::Diagnostics remarks;
+    live::Remarks remarks;
     return predict_flight(basis, mechanical::progress_at(series, until_s), select_tracks(series), remarks);
 }
 

@@ -70,7 +70,7 @@ TEST(Validate, RefusesOneFlightAndMomentsThatAreNone) {
     EXPECT_EQ(run(folder, "validate --at -5" + samples()).code, 2);
     const auto late = run(folder, "validate --at 5000" + samples());
     EXPECT_EQ(late.code, 4);
-    EXPECT_THAT(late.err, HasSubstr("opterra_synthetic_01 is excluded"));
+    EXPECT_THAT(late.err, HasSubstr("not in the air at the moment: 6 logs"));
 }
 
 TEST(ValidateStudy, InFlightBeatsBeforeFlightOnRealFlights) {

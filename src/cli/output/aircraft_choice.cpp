@@ -22,8 +22,10 @@ std::vector<std::string> names_of(const batch::AircraftGroup& group, FlownAircra
 }
 
 void warn_of_uncertain(const StageCall& call, const batch::AircraftGroup& group, FlownAircraft flights) {
-    warn(call, fmt::format("{}: left out: may be of {}: nothing in the log contradicts either",
-                           short_list(names_of(group, flights)), fmt::join(group.may_be, " or ")));
+    const auto text =
+        fmt::format("left out: may be of {}: nothing in the log contradicts either", fmt::join(group.may_be, " or "));
+    for (const auto& name : names_of(group, flights))
+        add_diagnostic(call, {Severity::warning, "of an uncertain aircraft", text, name});
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
                                     : left_out.empty() ? batch::exclusion_reason(record, own)
                                                        : left_out;
                    !why.empty() && !options.excluded.contains(record.flight)) {
-            note(call, fmt::format("{} is left out: {}", record.flight, why));
+            if (call.notes)  // the batch has shown it
+                add_diagnostic(call, {Severity::note, "left out by the batch", "is left out: " + why, record.flight});
         } else {
             files.push_back({record.log, (out / "flights" / (record.flight + batch::series_suffix)).string()});
         }
@@ -99,7 +100,8 @@ void add_logs_of_folder(const StageCall& call, const std::string& folder, const 
         if (!log.problem.empty())
             skip_input(call, log.path, InputError({log.path}, log.problem));
         else if (!log.why_not_fitted.empty() && !options.keep.contains(log.flight))
-            note(call, fmt::format("{} is left out: {}", log.path, log.why_not_fitted));
+            add_diagnostic(call,
+                           {Severity::note, "not to be fitted", "is left out: " + log.why_not_fitted, log.flight});
         else
             files.push_back(log.path);
     }

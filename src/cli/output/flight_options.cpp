@@ -3,9 +3,13 @@
 #include "base/error.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "batch/batch_files.h"
 #include "batch/batch_run.h"
+#include "batch/manifest.h"
 #include "cli/terminal.h"
 #include "flight/flight_identity.h"
+#include "mechanical/fit_records.h"
+#include "mechanical/model_fit.h"
 
 #include <unordered_map>
 #include <utility>
@@ -54,8 +58,9 @@ std::vector<std::size_t> without_copies(const StageCall& call, const std::vector
         if (original == used.end() || original->second == i) {
             numbers.push_back(i);
         } else {
-            warn(call, fmt::format("{} is excluded: {}", flights[i].flown.flight,
-                                   batch::duplicate_reason(flights[original->second].flown.flight)));
+            const auto reason = batch::duplicate_reason(flights[original->second].flown.flight);
+            add_diagnostic(call,
+                           {Severity::warning, "recorded twice", "it is excluded: " + reason, flights[i].flown.flight});
         }
     }
     return numbers;
@@ -148,17 +153,32 @@ void add_each_option(Options& options, FlightArguments& flights, const std::stri
     options.add("each", flights.each, description, {.excludes = std::move(excludes)});
 }
 
-void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight) {
-    for (const auto& warning : flight.warnings) warn(call, fmt::format("{}: {}", file, warning));
+void add_diagnostics(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight) {
+    if (is_shown_by_batch(call, file)) return;
+    for (const auto& diagnostic : flight.diagnostics) add_diagnostic(call, diagnostic);
 }
 
-std::string label_of(const std::string& file, const flight::LoadedFlight& flight) {
-    return flight.recording == 1 ? file : fmt::format("{}, recording {}", file, flight.recording);
+void add_other_aircraft(const StageCall& call, const std::string& flight, const flight::OtherAircraftError& error) {
+    add_diagnostic(call, {Severity::note, "of another aircraft",
+                          fmt::format("is left out: {}; {}", error.what(), error.hint()), flight});
+}
+
+Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion) {
+    const auto& [flight, phase, reason] = exclusion;
+    return {Severity::warning, phase ? "phases not used" : "not used: " + kind_of_reason(reason),
+            fmt::format("{} is excluded from the fit: {}", phase ? to_string(*phase) : "it", reason), flight};
+}
+
+bool is_shown_by_batch(const StageCall& call, const std::string& file) {
+    const auto folder = std::filesystem::path(file).parent_path();
+    return !call.notes && file.ends_with(batch::series_suffix) &&
+           std::filesystem::exists(folder.parent_path() / batch::manifest_name);
 }
 
 void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded) {
     for (const auto& [number, reason] : loaded.unused)
-        note(call, fmt::format("{}: recording {} is not used: {}", file, number, reason));
+        add_diagnostic(call, {Severity::note, "recordings without a flight",
+                              fmt::format("recording {} is not used: {}", number, reason), flight_of_file(file)});
 }
 
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
@@ -170,7 +190,7 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
     if (options.excluded.contains(loaded.series.flight)) {
         throw UsageError(fmt::format("--exclude {}: no other flight is given", loaded.series.flight));
     }
-    warn_of(call, label_of(file, loaded), loaded);
+    add_diagnostics(call, file, loaded);
     return loaded;
 }
 
@@ -203,7 +223,7 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
         } catch (const flight::OtherAircraftError& error) {
             reading.hide();
             flights.push_back(flight_of_file(file));
-            note(call, fmt::format("{} is left out: {}; {}", flights.back(), error.what(), error.hint()));
+            add_other_aircraft(call, flights.back(), error);
             other = error;
             continue;
         } catch (const InputError& error) {
@@ -220,10 +240,9 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
                 throw UsageError(fmt::format("flight '{}' is given twice", name));
             }
             flights.push_back(name);
-            const auto label = label_of(file, loaded);
-            warn_of(call, label, loaded);
+            add_diagnostics(call, file, loaded);
             known.push_back({batch::aircraft_of(loaded), content_of(loaded.series), loaded.exclusion.empty()});
-            read(label, loaded);
+            read(file, loaded);
         }
     }
     refuse_unknown_flights(options, flights);
@@ -235,9 +254,12 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
 std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
                                                                         const FlightArguments& arguments,
                                                                         std::size_t needed_samples) {
-    return from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
+    const auto needed_by_batch = mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order);
+    return from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
         auto measured = mechanical::extract_flights(loaded, needed_samples);
-        for (const auto& exclusion : measured.exclusions) warn(call, to_string(exclusion));
+        const bool is_shown = needed_samples <= needed_by_batch && is_shown_by_batch(call, file);
+        if (!is_shown && loaded.lacks_power.empty())  // which has a diagnostic of its own
+            for (const auto& exclusion : measured.exclusions) add_diagnostic(call, diagnostic_of(exclusion));
         return std::move(measured.flights);
     });
 }

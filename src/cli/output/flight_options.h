@@ -44,16 +44,16 @@ struct FlightFilter {
 /// --since and --until.
 void add_filter_options(Options& options, FlightFilter& filter);
 
-/// Prints the warnings of a flight that was read from `file`.
-void warn_of(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight);
+/// Collects what was found in a flight that was read from `file`, unless a batch has shown it.
+void add_diagnostics(const StageCall& call, const std::string& file, const flight::LoadedFlight& flight);
 
-/// Notes the recordings of a file without a flight.
+/// Collects that a log has no data of the aircraft that was chosen.
+void add_other_aircraft(const StageCall& call, const std::string& flight, const flight::OtherAircraftError& error);
+
+/// Collects which recordings of a file have no flight.
 void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded);
 
-/// The file, with the recording behind the first: for warnings.
-std::string label_of(const std::string& file, const flight::LoadedFlight& flight);
-
-/// The first flight of a file, with its warnings. Notes that there are other recordings.
+/// The first flight of a file, with its diagnostics. Notes that there are other recordings.
 flight::LoadedFlight load_flight(const StageCall& call, const std::string& file, const flight::LoadOptions& options);
 
 /// The candidates of the used recording of a file, with the same note.
@@ -106,6 +106,12 @@ template <typename T, typename Read>
 std::vector<T> from_flights(const StageCall& call, const FlightArguments& arguments, const Read& read) {
     return std::move(from_aircraft<T>(call, arguments, read).front().flights);
 }
+
+/// What an exclusion is to the user: a flight that is not used, or one of its phases.
+Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion);
+
+/// Whether this is a flight in the folder of a batch, whose diagnostics the batch has shown.
+bool is_shown_by_batch(const StageCall& call, const std::string& file);
 
 /// The sorties that were measured with so many samples a phase, of all flights that count; warns of excluded ones.
 std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,

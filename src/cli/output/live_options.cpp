@@ -60,6 +60,9 @@ bool is_binary_log(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;  // rejected when it is followed
     const auto bytes = telemetry::beginning_of_file(path);
+    if (telemetry::detect_autopilot_format(bytes))
+        throw InputError({path.string()}, "is a log of another autopilot, which is not followed",
+                         "watch follows Paparazzi's; flightwatt predict takes this one, with --at");
     if (!bytes.empty()) return telemetry::detect_binary_framing(bytes).has_value();
     const auto ending = path.extension().string();
     return ending == ".LOG" || ending == ".tlm" || ending == ".TLM" || ending == ".bin";
@@ -67,8 +70,8 @@ bool is_binary_log(const std::filesystem::path& path) {
 
 telemetry::MessageDictionary read_definitions(const SourceArguments& arguments, const std::string& what) {
     if (const auto file = definitions_of_source(arguments)) return telemetry::read_message_dictionary(*file);
-    throw InputError({what}, "frames need the definitions of their messages",
-                     "give --log FILE.log of the aircraft, or --messages messages.xml");
+    throw InputError({what}, "Paparazzi's frames need the definitions of their messages",
+                     "give --log FILE.log of the aircraft, or --messages messages.xml; MAVLink is not read");
 }
 
 std::unique_ptr<live::MessageSource> follow(const SourceArguments& arguments, const std::string& file) {

@@ -133,7 +133,7 @@ std::string text_of(const Prediction& prediction) {
            battery_text(battery);
 }
 
-void warn_of(const StageCall& call, const live::Diagnostics& remarks) {
+void warn_of(const StageCall& call, const live::Remarks& remarks) {
     for (const auto& warning : remarks.warnings) warn(call, warning);
     for (const auto& text : remarks.notes) note(call, text);
 }

@@ -21,7 +21,7 @@ using live::Prediction;
 std::string text_of(const Prediction& prediction);
 
 /// Prints the diagnostics of a prediction on the standard error.
-void warn_of(const StageCall& call, const live::Diagnostics& remarks);
+void warn_of(const StageCall& call, const live::Remarks& remarks);
 
 /// One row a flight, phase and model.
 TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights);

@@ -163,7 +163,9 @@ Fields<SegmentedFlight> record_fields(const SegmentedFlight*) {
             field("sorties", sortie_outputs, "flights of the log"),
             field("rejected_activities", at(&R::phases, &P::ground_events), "the motor ran without a flight"),
             field("power", &R::power, "the power record"),
-            field("warnings", &R::warnings, "warnings")};
+            field("warnings", at(&R::diagnostics, [](const Diagnostics& all) { return texts_of(all); }),
+                  "texts of the diagnostics"),
+            field("diagnostics", &R::diagnostics, "notes, warnings and errors")};
 }
 
 Fields<SegmentOutput> record_fields(const SegmentOutput*) {

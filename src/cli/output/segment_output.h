@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/diagnostic.h"
 #include "cli/screen_table.h"
 #include "flight/power_check.h"
 
@@ -24,7 +25,7 @@ struct SegmentedFlight {
     const flight::FlightData* data = nullptr;
     const flight::FlightPhases* phases = nullptr;
     const flight::PowerReport* power = nullptr;
-    const std::vector<std::string>* warnings = nullptr;
+    const Diagnostics* diagnostics = nullptr;
 };
 Fields<SegmentedFlight> record_fields(const SegmentedFlight*);
 

@@ -48,8 +48,8 @@ void correct_idle_offset(FlightSeries& series, const FlightData& data, const std
     replace_track(series, std::move(current));
     for (const Track* track : {&data.voltage_v, &data.charge_ah, &data.energy_wh})
         if (!track->empty()) replace_track(series, *track);
-    const auto after = selection_warnings(select_tracks(series));
-    for (const auto& warning : selection_warnings(data))
+    const auto after = texts_of(selection_diagnostics(select_tracks(series)));
+    for (const auto& warning : texts_of(selection_diagnostics(data)))
         if (std::ranges::find(after, warning) == after.end()) series.notes.push_back(warning);
     series.notes.push_back(
         fmt::format("the idle current of {:.4f} A ({} samples at rest) was subtracted", idle->mean_a, idle->samples));

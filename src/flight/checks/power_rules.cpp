@@ -44,6 +44,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// A rule for samples has `holds`, a rule for the whole record `when`, and any other one `findings`. The share of the
 /// samples, or the value of a finding, is compared with the limits.
 struct PowerRule {
+    const char* kind = "";  ///< of its diagnostics
     const char* text = "";  ///< with the arguments of format_finding()
     bool (*when)(const PowerRecord&) = nullptr;
     Findings (*findings)(const PowerRecord&) = nullptr;
@@ -108,46 +109,63 @@ bool is_brief_change(const PowerRecord& r, std::size_t i) {
 /// In the order of the reports. Whatever could hide 5 % of the energy is reported (reasons for the limits:
 /// docs/methods.md).
 constexpr PowerRule rules[] = {
-    {.text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
+    {.kind = "current at rest",
+     .text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_at_rest(i) && r.has_current(); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.current_a[i]) > faulty_rest_a; },
      .min_samples = 10,
      .fault_above = 0.10},
-    {.findings = counter_return, .fault_above = 0.05},
-    {.text = "power is negative on average in flight",
+    {.kind = "counter runs back", .findings = counter_return, .fault_above = 0.05},
+    {.kind = "negative power",
+     .text = "power is negative on average in flight",
      .when = [](const PowerRecord& r) { return r.power_sum_w < 0.0; },
      .fault_above = 0.0},
-    {.text = "power does not change in flight", .when = is_constant_in_flight, .fault_above = 0.0},
-    {.text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: "
+    {.kind = "constant power",
+     .text = "power does not change in flight",
+     .when = is_constant_in_flight,
+     .fault_above = 0.0},
+    {.kind = "current at rest",
+     .text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: "
              "electronics, or an offset of the sensor and its counters; --correct-idle-offset removes it",
      .when = is_loaded_at_rest,
      .warn_above = 0.0,
      .needs_energy = false},
-    {.findings = rest_current_drift, .warn_above = 0.05, .needs_energy = false},
-    {.text = "the voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
+    {.kind = "sensor drift", .findings = rest_current_drift, .warn_above = 0.05, .needs_energy = false},
+    {.kind = "implausible voltage",
+     .text = "the voltage of {max_v:.4g} V is that of more than 14 LiPo cells: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v > max_pack_v; },
      .warn_above = 0.0,
      .needs_energy = false},
-    {.text = "the voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
+    {.kind = "implausible voltage",
+     .text = "the voltage of {max_v:.4g} V is less than a LiPo cell's: is its unit V?",
      .when = [](const PowerRecord& r) { return r.max_v < min_pack_v; },
      .warn_above = 0.0,
      .needs_energy = false},
-    {.text = "the voltage falls from {max_v:.4g} to {min_v:.4g} V, too far for a pack: is its sensor damaged?",
+    {.kind = "implausible voltage",
+     .text = "the voltage falls from {max_v:.4g} to {min_v:.4g} V, too far for a pack: is its sensor damaged?",
      .when = [](const PowerRecord& r) { return has_pack_voltage(r) && r.min_v < min_voltage_part * r.max_v; },
      .warn_above = 0.0,
      .needs_energy = false},
-    {.findings = counter_difference, .warn_above = 3.0, .fault_above = max_counter_difference_percent},
-    {.findings = phase_difference, .warn_above = 1.0},
-    {.findings = product_difference, .warn_above = 0.05, .fault_above = 0.10},
-    {.findings = altitude_gaps, .warn_above = 0.06},
-    {.findings = power_gaps, .warn_above = 1.0},
-    {.text = "power rises or falls for up to 5 samples without the throttle, in {samples} samples in flight: "
+    {.kind = "counter disagrees",
+     .findings = counter_difference,
+     .warn_above = 3.0,
+     .fault_above = max_counter_difference_percent},
+    {.kind = "counter disagrees", .findings = phase_difference, .warn_above = 1.0},
+    {.kind = "power is not voltage times current",
+     .findings = product_difference,
+     .warn_above = 0.05,
+     .fault_above = 0.10},
+    {.kind = "gaps in the altitude", .findings = altitude_gaps, .warn_above = 0.06},
+    {.kind = "gaps in the power", .findings = power_gaps, .warn_above = 1.0},
+    {.kind = "power without throttle",
+     .text = "power rises or falls for up to 5 samples without the throttle, in {samples} samples in flight: "
              "{percent:.0f} % of the energy",
      .holds = is_brief_change,
      .share = Share::energy,
      .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.smooth_w[i]; },
      .warn_above = 0.02},
-    {.text = "power differs from the usual power at the same throttle in {samples} samples in flight: "
+    {.kind = "power without throttle",
+     .text = "power differs from the usual power at the same throttle in {samples} samples in flight: "
              "{less_percent:.0f} % of the energy less, {more_percent:.0f} % more",
      .holds =
          [](const PowerRecord& r, std::size_t i) {
@@ -157,13 +175,15 @@ constexpr PowerRule rules[] = {
      .share = Share::energy,
      .energy_w = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] - r.usual_w[i]; },
      .warn_above = 0.04},
-    {.text = "power is stuck at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
+    {.kind = "sensor stuck",
+     .text = "power is stuck at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.is_open(i); },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] == r.power_w[i - 1]; },
      .min_run = stuck_samples,
      .share = Share::time_or_energy,
      .warn_above = 0.04},
-    {.text = "the current is stuck in {percent:.0f} % of the samples in flight: is its sensor damaged?",
+    {.kind = "sensor stuck",
+     .text = "the current is stuck in {percent:.0f} % of the samples in flight: is its sensor damaged?",
      .holds =
          [](const PowerRecord& r, std::size_t i) {
              return r.has_current() && r.current_a[i] > 0.0 && !(r.is_clipped && r.current_a[i] == r.max_a);
@@ -171,47 +191,56 @@ constexpr PowerRule rules[] = {
      .continues = [](const PowerRecord& r, std::size_t i) { return r.current_a[i] == r.current_a[i - 1]; },
      .min_run = stuck_samples,
      .warn_above = 0.04},
-    {.text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: its sensor is "
+    {.kind = "sensor saturated",
+     .text = "the current is {max_a:.4g} A, its highest, in {percent:.0f} % of the samples in flight: its sensor is "
              "saturated, and the true energy is higher",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_current() && r.current_a[i] == r.max_a; },
      .min_samples = stuck_samples,
      .warn_above = 0.05,
      .unless_previous = true},
-    {.text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
+    {.kind = "no power in flight",
+     .text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
              "{percent:.0f} % of the flight has no power",
      .holds = [](const PowerRecord& r,
                  std::size_t i) { return r.power_w[i] == 0.0 && (r.is_open(i) || !r.has_throttle()); },
      .min_level_s = 5.0,
      .share = Share::time,
      .warn_above = 0.02},
-    {.text = "power is negative in {samples} samples in flight, {percent:.0f} % of the energy",
+    {.kind = "negative power",
+     .text = "power is negative in {samples} samples in flight, {percent:.0f} % of the energy",
      .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] < 0.0; },
      .share = Share::energy,
      .warn_above = 0.02},
-    {.text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
+    {.kind = "no power in flight",
+     .text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
      .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.is_open(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
      .warn_above = 0.15},
-    {.text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
+    {.kind = "power outside of flights",
+     .text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: was it a long run-up, or is the altitude wrong?",
      .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return r.is_open(i); },
      .min_s = 30.0,
      .share = Share::energy,
      .warn_above = 0.05},
-    {.findings = powerless_climb, .warn_above = 10.0},
-    {.text = "the mean power of {mean_w:.3g} W in flight is less than an aircraft needs: is its unit W?",
+    {.kind = "climb without power", .findings = powerless_climb, .warn_above = 10.0},
+    {.kind = "implausible power",
+     .text = "the mean power of {mean_w:.3g} W in flight is less than an aircraft needs: is its unit W?",
      .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s < min_mean_power_w; },
      .warn_above = 0.0},
-    {.text = "the mean power of {mean_w:.3g} W in flight is more than a small aircraft draws: is its unit W?",
+    {.kind = "implausible power",
+     .text = "the mean power of {mean_w:.3g} W in flight is more than a small aircraft draws: is its unit W?",
      .when = [](const PowerRecord& r) { return r.energy_j / r.duration_s > max_mean_power_w; },
      .warn_above = 0.0},
-    {.text =
+    {.kind = "power logged in part",
+     .text =
          "power is logged from {power_from_s:.0f} s, altitude from {altitude_from_s:.0f} s: earlier power is missing",
      .when = [](const PowerRecord& r) { return r.time_s.front() - altitude_span(r).first > max_missing_s(r); },
      .warn_above = 0.0,
      .needs_energy = false},
-    {.text = "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: later power is missing",
+    {.kind = "power logged in part",
+     .text = "power is logged to {power_to_s:.0f} s, altitude to {altitude_to_s:.0f} s: later power is missing",
      .when = [](const PowerRecord& r) { return altitude_span(r).second - r.time_s.back() > max_missing_s(r); },
      .warn_above = 0.0,
      .needs_energy = false},
@@ -312,7 +341,10 @@ void apply_power_rules(const PowerRecord& record, PowerReport& report) {
         for (const auto& [value, text] : apply(rule, record)) {
             const bool is_fault = value > rule.fault_above;
             if (!is_fault && !(value > rule.warn_above && (!rule.needs_energy || record.energy_j > 0.0))) continue;
-            (is_fault ? report.power_faults : report.warnings).push_back(text);
+            if (is_fault)
+                report.power_faults.push_back(text);
+            else
+                report.warnings.push_back({Severity::warning, rule.kind, text});
             was_reported = true;
         }
     }

@@ -121,7 +121,7 @@ void keep_jumps_in_flight(ResampledFlight& grid, const Track& motor_percent, Cle
 
 void require_altitude(const FlightData& data, const Track& altitude) {
     if (!altitude.empty()) return;
-    const auto warnings = selection_warnings(data);
+    const auto warnings = texts_of(selection_diagnostics(data));
     throw InputError(
         {data.file.empty() ? data.flight : data.file}, "has no altitude, so phases cannot be found",
         fmt::format("expected ESTIMATOR, GPS, GPS_INT, AIR_DATA or ROTORCRAFT_FP, or a column altitude_m{}{}",

@@ -215,18 +215,18 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
     return circuit;
 }
 
-void describe_choice(const std::vector<Monitor>& monitors, std::size_t circuits, ChosenTrack& power) {
+void describe_choice(const std::vector<Monitor>& monitors, BatteryTracks& found) {
     std::vector<std::string> used;
     for (const auto& monitor : monitors)
         if (monitor.exclusion.empty()) used.push_back(monitor.text());
     if (used.size() > 1)
-        power.notes.push_back(fmt::format("the power is the sum over the {} {}",
-                                          circuits == 1 ? "batteries" : "batteries of circuits of their own",
-                                          fmt::join(used, " and ")));
+        found.note = fmt::format("the power is the sum over the {} {}",
+                                 found.circuits.size() == 1 ? "batteries" : "batteries of circuits of their own",
+                                 fmt::join(used, " and "));
     for (const auto& monitor : monitors)
         if (!monitor.exclusion.empty())
-            power.notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}", monitor.text(),
-                                              monitor.exclusion, fmt::join(used, " and ")));
+            found.power_w.notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}", monitor.text(),
+                                                      monitor.exclusion, fmt::join(used, " and ")));
 }
 
 }  // namespace
@@ -248,7 +248,7 @@ std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
     static_cast<Track&>(found.power_w) = sum_of(std::move(powers), found.power_w);
     ChosenTrack unused;
     static_cast<Track&>(found.energy_wh) = counter_of(all, &Monitor::energy_wh, unused);
-    describe_choice(monitors, found.circuits.size(), found.power_w);
+    describe_choice(monitors, found);
     return found;
 }
 

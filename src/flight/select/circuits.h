@@ -14,6 +14,7 @@ struct BatteryTracks {
     std::vector<Circuit> circuits;  ///< the one with the most power first
     ChosenTrack power_w;            ///< of all circuits
     ChosenTrack energy_wh;          ///< counters of all circuits
+    std::string note = {};          ///< of which batteries the power is the sum
 };
 
 /// std::nullopt without numbered monitors that measure a current.

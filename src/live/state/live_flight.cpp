@@ -101,7 +101,7 @@ class LiveFlight::Impl {
     void check_record(const flight::FlightData& data, const LiveState& state);
     std::string no_prediction_reason(const flight::FlightData& data, const LiveState& state) const;
     void predict(const flight::FlightData& data, LiveState& state);
-    void predict_battery(LiveState& state, Diagnostics& remarks) const;
+    void predict_battery(LiveState& state, Remarks& remarks) const;
     void forecast(LiveState& state) const;
     void decide(LiveState& state);
     void add_warnings(LiveState& state) const;
@@ -224,7 +224,7 @@ std::string LiveFlight::Impl::no_prediction_reason(const flight::FlightData& dat
 void LiveFlight::Impl::predict(const flight::FlightData& data, LiveState& state) {
     state.no_prediction_reason = no_prediction_reason(data, state);
     if (!state.no_prediction_reason.empty()) return;
-    Diagnostics remarks;
+    Remarks remarks;
     try {
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown =
@@ -245,7 +245,7 @@ void LiveFlight::Impl::predict(const flight::FlightData& data, LiveState& state)
     state.warnings.insert(state.warnings.end(), remarks.warnings.begin(), remarks.warnings.end());
 }
 
-void LiveFlight::Impl::predict_battery(LiveState& state, Diagnostics& remarks) const {
+void LiveFlight::Impl::predict_battery(LiveState& state, Remarks& remarks) const {
     if (!state.battery) return;
     const auto& now = *state.battery;
     const bool has_record = !state.began_in_air && record_ && now.soc_percent;
@@ -311,7 +311,7 @@ void LiveFlight::Impl::check_record(const flight::FlightData& data, const LiveSt
     try {
         auto assessment = assess_flight(data, phases_);
         rejected_ = fmt::format("{}", fmt::join(assessment.power.power_faults, ", "));
-        warnings_ = std::move(assessment.warnings);
+        warnings_ = texts_of(assessment.diagnostics, Severity::warning);
     } catch (const std::exception& error) {
         warnings_ = {error.what()};
     }

@@ -183,8 +183,7 @@ mechanical::FlightProgress airborne_progress(const flight::FlightData& data, con
 }
 
 Prediction predict_airborne_start(const PredictionInput& input, const mechanical::FlightProgress& flown,
-                                  bool has_cruise_start, const std::optional<path::PathFix>& fix,
-                                  Diagnostics& remarks) {
+                                  bool has_cruise_start, const std::optional<path::PathFix>& fix, Remarks& remarks) {
     auto ahead = input;
     ahead.prior = mechanical::CruisePrior::constant;  // the position on the curve is not known
     double max_s = 0.0;

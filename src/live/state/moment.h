@@ -44,7 +44,7 @@ mechanical::FlightProgress airborne_progress(const flight::FlightData& data, con
 /// Predicts a flight whose telemetry begins in the air. Unless the start of the cruise was received or the remaining
 /// time is given, that is uniform between 0 and the mission's cruise less the part received. Throws as predict_energy.
 Prediction predict_airborne_start(const PredictionInput& input, const mechanical::FlightProgress& flown,
-                                  bool has_cruise_start, const std::optional<path::PathFix>& fix, Diagnostics& remarks);
+                                  bool has_cruise_start, const std::optional<path::PathFix>& fix, Remarks& remarks);
 
 /// Sets the state of charge by the autopilot's counter, which counts from `initial_soc_percent` on, where it is not
 /// known otherwise.

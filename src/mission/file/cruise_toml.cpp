@@ -135,6 +135,10 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s};
     if (path.has("waypoints")) return path::read_waypoints(file_of(path, "waypoints"), settings);
     if (path.has("area")) {
+        if (!path.has("spacing_m") || !path.has("heading_deg"))
+            throw InputError(path.where("area"), "an area needs spacing_m and heading_deg",
+                             "give the distance between its lines, spacing_m = 30, and their direction clockwise from "
+                             "north, heading_deg = 90");
         const auto file = file_of(path, "area");
         const double spacing_m = number_in(between(path::min_radius_m, path::max_radius_m), path, "spacing_m");
         return path::parse_area(read_file(file), file.string(), spacing_m,
@@ -228,7 +232,10 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
     auto entries = read_entries(table, defaults, mission);
     if (reading.circles) {
         auto* repeated = repeated_circles(entries);
-        if (repeated == nullptr) throw NoResultError("the path has no circles");
+        if (repeated == nullptr)
+            throw NoResultError(
+                "the path has no circles that could be repeated: its cruise is as long as its legs. Add circles at its "
+                "end (docs/missions.md), or ask without [path], with duration_s");
         repeated->circles = *reading.circles;
     }
     auto path = path_of(entries, defaults);

@@ -6,6 +6,7 @@
 #include "mission/mission_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <system_error>
 
@@ -58,6 +59,17 @@ double read_duration(const TomlTable& durations, std::string_view phase) {
     return number_in(between(shortest_phase_s, max_phase_s), durations, phase, "or 0: not flown");
 }
 
+/// A cruise whose number is nearer to that of the model's flights in minutes than in seconds.
+void note_minutes(MissionSetup& mission) {
+    const double cruise_s = mission.duration_s[Phase::cruise];
+    const double flown_s = mission.mechanical ? mission.mechanical->phases[Phase::cruise].duration_s : 0.0;
+    if (cruise_s <= 0.0 || cruise_s * std::sqrt(units::seconds_per_minute) >= flown_s) return;
+    mission.notes.push_back(
+        fmt::format("cruise = {0} is {0} s, and the model's flights cruised for {1:.0f} s: are {0} "
+                    "minutes meant, cruise = {2}?",
+                    cruise_s, flown_s, cruise_s * units::seconds_per_minute));
+}
+
 void read_durations(const TomlTable& root, MissionSetup& mission) {
     const auto& mechanical = mission.mechanical;
     if (mechanical) {
@@ -77,6 +89,7 @@ void read_durations(const TomlTable& root, MissionSetup& mission) {
         total_s += mission.duration_s[phase];
     }
     if (given) given->refuse_unknown_keys();
+    note_minutes(mission);
     if (total_s == 0.0) throw InputError(root.where("duration_s"), "all phases take 0 s, expected a mission");
 }
 
@@ -93,6 +106,20 @@ void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
     if (!capacity_ah) return;
     battery.capacity_ah = *capacity_ah;
     battery.intervals.capacity_ah.reset();  // that was of the other capacity
+}
+
+/// A pack whose voltage when full is not that of the model's flights, whose packs were about full at the start.
+void note_other_cells(MissionSetup& mission) {
+    constexpr double least_part = 0.85;  // a nominal voltage, or a pack of one cell less
+    constexpr double most_times = 1.2;   // flights that begin with 3.5 V a cell
+    if (!mission.mechanical || !mission.mechanical->pack_voltage_v) return;
+    const double flown_v = *mission.mechanical->pack_voltage_v;
+    const double full_v = open_circuit_voltage_v(mission.battery, units::percent_per_whole);
+    if (full_v >= least_part * flown_v && full_v <= most_times * flown_v) return;
+    mission.notes.push_back(
+        fmt::format("the pack has {:.1f} V when full, and the model's flights were flown with up to "
+                    "{:.1f} V: has it another number of cells?",
+                    full_v, flown_v));
 }
 
 compute::Component read_component(const TomlTable& table, const std::string& name) {
@@ -265,6 +292,7 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
         mission.duration_is_stated[Phase::cruise] = true;
     }
     read_mission_battery(root, mission);
+    note_other_cells(mission);
     mission.may_charge = root.optional_boolean("may_charge").value_or(false);
     read_components(root, mission);
     mission.initial_soc_percent = optional_number_in(between(1.0, 100.0), root, "initial_soc_percent",

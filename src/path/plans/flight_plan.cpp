@@ -93,7 +93,10 @@ FlightPlan load_flight_plan(std::string_view text, const std::string& file) {
     plan.root = plan.document.child("flight_plan");
     if (!plan.root) plan.root = plan.document.child("procedure");
     if (!plan.root)
-        throw InputError({file}, "has no <flight_plan> and no <procedure>", "expected a flight plan of Paparazzi");
+        throw InputError({file}, "has no <flight_plan> and no <procedure>",
+                         plan.document.child("kml") ? "a KML file is the area of a mission: in its [path] area = FILE, "
+                                                      "spacing_m and heading_deg"
+                                                    : "expected a flight plan of Paparazzi");
     for (const auto& waypoint : plan.root.child("waypoints").children("waypoint")) {
         plan.number.emplace(attribute(waypoint, "name"), plan.waypoints.size());
         plan.waypoints.push_back(waypoint);

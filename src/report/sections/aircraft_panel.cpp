@@ -158,13 +158,13 @@ std::string flight_notes_html(Flights flights) {
         if (!flights[f].rejected.empty() || flights[f].warnings.empty()) continue;
         const auto& warnings = flights[f].warnings;
         const auto more = warnings.size() > 1 ? fmt::format(" (and {} more)", warnings.size() - 1) : "";
-        notes.push_back(fmt::format("<a href=\"#{}\">{} on {}</a>: {}{}", ids[f], plural(warnings.size(), "note"),
+        notes.push_back(fmt::format("<a href=\"#{}\">{} on {}</a>: {}{}", ids[f], plural(warnings.size(), "warning"),
                                     html_escaped(flight_title(flights[f])), html_escaped(warnings.front()), more));
     }
     if (notes.size() > max_shown) {
         const auto more = notes.size() - max_shown;
         notes.resize(max_shown);
-        notes.push_back(fmt::format("<a href=\"#flights\">Notes on {}</a>", plural(more, "more flight")));
+        notes.push_back(fmt::format("<a href=\"#flights\">Warnings on {}</a>", plural(more, "more flight")));
     }
     if (rejected > 0) notes.push_back(fmt::format("<a href=\"#excluded\">{}</a> rejected", plural(rejected, "log")));
     std::string html;

@@ -114,7 +114,8 @@ Section contents_of(const ReportFlight& flight, const mechanical::MechanicalMode
         section.figures.back().spec = spec;  // of its file
     };
     const auto log = std::filesystem::path(flight.log).filename().string();  // the page goes to others
-    section.html += paragraph("From " + log, "soft") + list_html(flight.warnings, "warning");
+    section.html +=
+        paragraph("From " + log, "soft") + list_html(flight.warnings, "warning") + list_html(flight.notes, "soft");
     if (const auto shares = circuit_shares(flight.data, flight.phases); shares.size() > 1)
         for (const auto& [name, energy_wh, percent] : shares)
             section.html +=

@@ -66,7 +66,8 @@ TEST_F(FlightOptions, UseTheRecordingOfAFlightThatHasItsLog) {
         const auto once = run(stage + sample(1) + sample(2) + sample(3));
         const auto twice = run(stage + " first.data" + sample(1) + sample(2) + sample(3));
         EXPECT_EQ(twice.code, 0) << twice.err;
-        EXPECT_THAT(twice.err, HasSubstr("warning: first is excluded: it is the same flight as opterra_synthetic_01"));
+        EXPECT_THAT(twice.err,
+                    HasSubstr("warning: first: it is excluded: it is the same flight as opterra_synthetic_01"));
         EXPECT_EQ(twice.out, once.out) << stage;
     }
 }

@@ -38,8 +38,8 @@ TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     const auto data = select_tracks(flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data"));
     const auto phases = segment(data);
     const auto power = check_power_record(data, phases);
-    const std::vector<std::string> warnings{"a warning"};
-    const auto json = record_json(SegmentedFlight{&data, &phases, &power, &warnings});
+    const Diagnostics found{{Severity::warning, "a kind", "a warning"}};
+    const auto json = record_json(SegmentedFlight{&data, &phases, &power, &found});
     EXPECT_EQ(json["flight"], "opterra_synthetic_01");
     ASSERT_EQ(json["sorties"].size(), 1U);
     const auto& spans = json["sorties"][0]["phases"];
@@ -52,6 +52,7 @@ TEST(SegmentJson, HoldsPhasesEdgesAndThePowerCheck) {
     ASSERT_EQ(json["rejected_activities"].size(), 1U);
     EXPECT_EQ(json["rejected_activities"][0]["what"], phases.ground_events[0].what);
     EXPECT_EQ(json["warnings"][0], "a warning");
+    EXPECT_EQ(json["diagnostics"][0]["severity"], "warning");
     EXPECT_GT(json["power"]["idle_current"]["samples"], 0);
 }
 

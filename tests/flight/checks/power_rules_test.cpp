@@ -26,8 +26,8 @@ constexpr std::size_t first = 100;
 constexpr std::size_t last = 1100;  // a thousand samples in flight, one a second
 
 /// What is found where the first `count` samples in flight (from 200 on) are changed.
-PowerReport found(std::size_t count, const std::function<void(PowerRecord&, std::size_t)>& change,
-                  std::size_t flown = 1000) {
+test::FoundTexts found(std::size_t count, const std::function<void(PowerRecord&, std::size_t)>& change,
+                       std::size_t flown = 1000) {
     auto record = sound_record(flown);
     for (std::size_t i = 200; i < 200 + count; ++i) change(record, i);
     return found_in(std::move(record));

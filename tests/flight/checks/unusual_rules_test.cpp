@@ -44,7 +44,7 @@ double sound_energy_wh() {
 
 TEST(PowerWarnings, SayNothingOfASoundLog) {
     for (const bool counts : {true, false})
-        EXPECT_THAT(with_energy(counts, [](test::Words&, int) {}).warnings, testing::IsEmpty());
+        EXPECT_THAT(texts_of(with_energy(counts, [](test::Words&, int) {}).diagnostics), testing::IsEmpty());
 }
 
 TEST(PowerWarnings, LeaveOutWildSamples) {
@@ -134,10 +134,11 @@ TEST(PowerWarnings, TellOfACurrentThatHangsOrIsSaturated) {
     const auto hangs = with_energy(false, [&](test::Words& words, int number) {
         if (number > 100 && number < 300) draw(words, 2.9);
     });
-    EXPECT_THAT(hangs.warnings, testing::Contains(HasSubstr("the current is stuck in ")));
+    EXPECT_THAT(texts_of(hangs.diagnostics), testing::Contains(HasSubstr("the current is stuck in ")));
     const auto saturated =
         with_energy(false, [&](test::Words& words, int) { draw(words, std::min(value(words, current), 2.4)); });
-    EXPECT_THAT(saturated.warnings, testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
+    EXPECT_THAT(texts_of(saturated.diagnostics),
+                testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
 }
 
 TEST(PowerWarnings, LeaveOutShortDropoutsWhileTheThrottleIsOpen) {
@@ -155,7 +156,7 @@ TEST(PowerWarnings, LeaveAMotorThatIsCutForShort) {
     const auto loaded = with_energy(false, [](test::Words& words, int number) {
         if (number % 40 < 2) words[power] = words[current] = words[throttle] = "0";
     });
-    EXPECT_THAT(loaded.warnings, testing::IsEmpty());
+    EXPECT_THAT(texts_of(loaded.diagnostics), testing::IsEmpty());
     EXPECT_EQ(power_track(loaded.series).time_s.size(), 628U);
 }
 
@@ -229,7 +230,7 @@ TEST(PowerWarnings, TellOfTheCounterFromThreePercentOn) {
     const auto apart = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.06); });
     EXPECT_THAT(test::said_of(apart), HasSubstr("away from the on-board energy counter"));
     const auto near = with_energy(true, [](test::Words& words, int) { scale(words, energy, 1.02); });
-    EXPECT_THAT(near.warnings, testing::IsEmpty());
+    EXPECT_THAT(texts_of(near.diagnostics), testing::IsEmpty());
 }
 
 /// The first sample log with four ESCs instead of ENERGY. `report`: amperes, volts and watts of each, from the pack's.
@@ -257,8 +258,8 @@ TEST(PowerWarnings, CompareThePowerOfEscsWithVoltageTimesCurrent) {
         return with_escs([by](double, double&, double&, double& watts) { watts *= by; });
     };
     EXPECT_THAT(scaled(1.11).power.power_faults, testing::Contains(compares));
-    EXPECT_THAT(scaled(1.055).warnings, testing::Contains(compares));
-    EXPECT_THAT(scaled(1.045).warnings, Not(testing::Contains(compares)));
+    EXPECT_THAT(texts_of(scaled(1.055).diagnostics), testing::Contains(compares));
+    EXPECT_THAT(texts_of(scaled(1.045).diagnostics), Not(testing::Contains(compares)));
 }
 
 TEST(PowerWarnings, TellOfDevicesThatAllReportNothingInFlight) {
@@ -268,9 +269,9 @@ TEST(PowerWarnings, TellOfDevicesThatAllReportNothingInFlight) {
         });
     };
     const auto dead = testing::Contains(HasSubstr("in flight without a descent, the longest from 20"));
-    EXPECT_THAT(dead_for(40.0).warnings, dead);
-    EXPECT_THAT(dead_for(8.0).warnings, Not(dead)) << "2 % of the flight";
-    EXPECT_THAT(dead_for(0.0).warnings, Not(dead)) << "it glides down with its motor off";
+    EXPECT_THAT(texts_of(dead_for(40.0).diagnostics), dead);
+    EXPECT_THAT(texts_of(dead_for(8.0).diagnostics), Not(dead)) << "2 % of the flight";
+    EXPECT_THAT(texts_of(dead_for(0.0).diagnostics), Not(dead)) << "it glides down with its motor off";
 }
 
 TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
@@ -284,8 +285,8 @@ TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
     };
     const auto whole = testing::Contains(HasSubstr("away from the on-board energy counter"));
     const auto phase = testing::Contains(testing::ContainsRegex("takeoff at .* Wh were measured and .* Wh counted"));
-    EXPECT_THAT(lacking(0.5).warnings, testing::AllOf(whole, phase));
-    EXPECT_THAT(lacking(0.95).warnings, testing::AllOf(whole, Not(phase)));
+    EXPECT_THAT(texts_of(lacking(0.5).diagnostics), testing::AllOf(whole, phase));
+    EXPECT_THAT(texts_of(lacking(0.95).diagnostics), testing::AllOf(whole, Not(phase)));
 }
 
 TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
@@ -295,7 +296,7 @@ TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
         words[charge] = "0";
         if (number % 18 != 0) words.clear();
     });
-    EXPECT_THAT(seldom.warnings, testing::Contains(HasSubstr("away from the on-board energy counter")));
+    EXPECT_THAT(texts_of(seldom.diagnostics), testing::Contains(HasSubstr("away from the on-board energy counter")));
     const auto& sortie = seldom.phases.sorties.at(0);
     EXPECT_GT(PowerStatistics(seldom.data).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
 }

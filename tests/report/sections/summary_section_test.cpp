@@ -48,7 +48,7 @@ TEST(SummarySection, WarnsOfFlightsAndOfWhatIsMissing) {
     answers.notes = {"There is no model."};
     const std::vector<ReportFlight> flights{flight, rejected};
     const auto html = summary_section(answers, flights).html;
-    EXPECT_THAT(html, HasSubstr("2 notes on 1 January 2020, 10:00</a>: a gap (and 1 more)"));
+    EXPECT_THAT(html, HasSubstr("2 warnings on 1 January 2020, 10:00</a>: a gap (and 1 more)"));
     EXPECT_THAT(html, HasSubstr("1 log</a> rejected"));
     EXPECT_THAT(html, HasSubstr("<a href=\"#notes\">2 notes</a>"));
     EXPECT_THAT(html, Not(HasSubstr("<article"))) << "no missions";
