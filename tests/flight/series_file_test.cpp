@@ -114,6 +114,30 @@ TEST(SeriesFile, KeepsDevicesApart) {
     EXPECT_EQ(power_track(again).source, "ESC, summed over 2 devices");
 }
 
+TEST(SeriesFile, HasThePowerThatIsChosenInItsFirstColumn) {
+    FlightSeries series;
+    series.flight = "x";
+    for (const auto* device : {"0", "1"}) {
+        const double amperes = device[0] == '0' ? 2.0 : 7.0;
+        const auto add = [&](const std::string& name, const std::string& source, double value) {
+            series.tracks.push_back({.name = name, .source = source, .device = device});
+            series.tracks.back().time_s = {1.0, 2.0};
+            series.tracks.back().value = {value, 2.0 * value};
+        };
+        add("voltage_v", "BAT.Volt", 10.0);
+        add("current_a", "BAT.Curr", amperes);
+        add("power_w", "BAT.Volt * BAT.Curr", 10.0 * amperes);
+    }
+    const auto text = to_csv(series);
+    EXPECT_THAT(text, HasSubstr("# chosen = true\n"));
+    EXPECT_THAT(text, HasSubstr("\ntime_s,power_w,voltage_v,current_a,power_w.2,"));
+    EXPECT_THAT(text, HasSubstr("\n1,90,10,2,20,"));
+    EXPECT_TRUE(parse_series_csv(text, series.file) == series) << "the candidates alone are the series";
+    auto changed = text;
+    changed.replace(changed.find("\n1,90,"), 6, "\n1,91,");
+    EXPECT_THAT(test::rejected([&] { parse_series_csv(changed, "x.csv"); }), HasSubstr("was it changed?"));
+}
+
 TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
     const auto series = parse_series_csv("# mine\ntime_s,power_w,altitude_m\n1,2,\n2,3,10\n3,,11\n", "out/mine.csv");
     EXPECT_EQ(series.flight, "mine");

@@ -141,6 +141,23 @@ TEST(PowerWarnings, TellOfACurrentThatHangsOrIsSaturated) {
                 testing::Contains(HasSubstr("the current is 2.4 A, its highest, in ")));
 }
 
+TEST(PowerWarnings, LeaveABatteryThatReportsSlowerThanTheLog) {
+    test::Words last;
+    const auto slow = with_energy(false, [&](test::Words& words, int number) {
+        if (number % 40 == 1) last = words;
+        for (const auto field : {voltage, current, power}) words[field] = last[field];
+    });
+    EXPECT_THAT(texts_of(slow.diagnostics), testing::Each(testing::Not(HasSubstr("stuck"))));
+}
+
+TEST(PowerWarnings, TellOfANegativeCurrentAtRest) {
+    const auto loaded = with_energy(false, [](test::Words& words, int) {
+        set(words, current, value(words, current) - 0.4);
+        set(words, power, value(words, current) * value(words, voltage));
+    });
+    EXPECT_THAT(test::said_of(loaded), HasSubstr("the current is -0.37 A at rest on the ground"));
+}
+
 TEST(PowerWarnings, LeaveOutShortDropoutsWhileTheThrottleIsOpen) {
     for (const int length : {1, 2, 3}) {
         const auto loaded = with_energy(false, [&](test::Words& words, int number) {

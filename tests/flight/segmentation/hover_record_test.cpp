@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -160,6 +162,62 @@ TEST(LandDetector, ConfirmsAnEdgeIfItReportsAllTheTime) {
     EXPECT_EQ(confirmed_by_detector(detector, 6.5, true), 6.5) << "the other turn";
     EXPECT_EQ(confirmed_by_detector(detector, 15.0, true), 16.0);
     EXPECT_EQ(confirmed_by_detector(state("landed", {5.0}, {0.0}), 6.5, false), 6.5);
+}
+
+/// A copter that hovers at 50 m from 20 to 100 s; its motors give `percent` then until the end, at heights as given.
+FlightPhases after_motors_stop(const std::vector<double>& later_m, double percent = 5.0) {
+    FlightSeries series;
+    series.firmware = "rotorcraft";
+    Track throttle{.name = "throttle_percent", .source = "CTUN.ThO"};
+    Track altitude{.name = "altitude_m", .source = "BARO.Alt"};
+    const auto add = [&](double height_m, double throttle_percent) {
+        for (auto* track : {&throttle, &altitude})
+            track->time_s.push_back(0.5 * static_cast<double>(track->value.size()));
+        altitude.value.push_back(height_m);
+        throttle.value.push_back(throttle_percent);
+    };
+    for (double t = 0.0; t < 100.0; t += 0.5) add(std::clamp(5.0 * (t - 20.0), 0.0, 50.0), t < 20.0 ? 5.0 : 50.0);
+    for (const double height_m : later_m) add(height_m, percent);
+    series.tracks = {altitude, throttle, state("armed", {0.0}, {1.0})};
+    return segment(select_tracks(series));
+}
+
+/// Heights each half second of a fall from 50 m.
+std::vector<double> fall_to(double ground_m, double still_s) {
+    std::vector<double> heights_m;
+    for (double t = 0.5; 50.0 - 4.9 * t * t > ground_m; t += 0.5) heights_m.push_back(50.0 - 4.9 * t * t);
+    heights_m.insert(heights_m.end(), static_cast<std::size_t>(2.0 * still_s), ground_m);
+    return heights_m;
+}
+
+TEST(HoverRecord, AFallAfterTheMotorsStoppedBelongsToTheFlight) {
+    const auto phases = after_motors_stop(fall_to(0.0, 20.0));
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    EXPECT_NEAR(phases.sorties[0].start_s(), 20.0, 1.5);
+    EXPECT_NEAR(phases.sorties[0].end_s(), 103.0, 1.5);
+    EXPECT_TRUE(phases.sorties[0].phases.back().complete);
+}
+
+TEST(HoverRecord, ALogThatEndsInAFallHasNoGroundAtItsEnd) {
+    const auto phases = after_motors_stop(fall_to(25.0, 0.0));
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    EXPECT_NEAR(phases.sorties[0].ground_altitude_m, 0.0, 0.1) << "that before the flight";
+    EXPECT_NEAR(phases.sorties[0].start_s(), 20.0, 1.5);
+    EXPECT_FALSE(phases.sorties[0].phases.back().complete);
+}
+
+TEST(HoverRecord, APauseWithIdleMotorsOnBothSidesPartsFlightsWhateverTheArmingStates) {
+    const auto sorties_with = [](double pause_s, double idle_s) {
+        auto series = hopping_copter();
+        series.tracks.push_back(state("armed", {5.0}, {1.0}));
+        for (auto& track : series.tracks)
+            if (track.name != "armed")
+                for (auto& t : track.time_s)
+                    if (t > 60.0 + idle_s) t += pause_s;
+        return segment(select_tracks(series)).sorties.size();
+    };
+    EXPECT_EQ(sorties_with(8.0, 4.0), 2U);
+    EXPECT_EQ(sorties_with(0.0, 4.0), 1U) << "armed throughout, as if it descended";
 }
 
 }  // namespace
