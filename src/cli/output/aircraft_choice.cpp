@@ -57,7 +57,7 @@ void note_other_flights(const StageCall& call, AircraftGroups groups, const batc
             std::ranges::move(names_of(group, flights), std::back_inserter(others));
     }
     if (!others.empty())
-        note(call, fmt::format("{} flights of other aircraft are left out: {}", others.size(), short_list(others)));
+        note(call, fmt::format("left out, as of other aircraft: {}", short_list(others)));
 }
 
 ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::string>& aircraft,

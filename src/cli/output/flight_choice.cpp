@@ -75,7 +75,8 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
     }
     if (others > 0)
         note(call,
-             fmt::format("{}: {} flights of other aircraft than its model's are left out; --aircraft selects them",
+             fmt::format("{}: left out, as of other aircraft than its model's: {} of its flights; --aircraft selects "
+                         "them",
                          out.string(), others));
     return files;
 }
