@@ -4,10 +4,10 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/number.h"
+#include "flight/families/log_family.h"
+#include "flight/families/mapped_csv.h"
 #include "flight/flight_identity.h"
 #include "flight/series_file.h"
-#include "flight/sources/log_family.h"
-#include "flight/sources/mapped_csv.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/recordings.h"
 

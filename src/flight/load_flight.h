@@ -5,7 +5,7 @@
 #include "flight/flight_file.h"
 #include "flight/flight_series.h"
 #include "flight/power_check.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "telemetry/data_file.h"
 
 #include <cstddef>

@@ -5,8 +5,8 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
+#include "flight/families/series_table.h"
 #include "flight/select.h"
-#include "flight/sources/series_table.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>

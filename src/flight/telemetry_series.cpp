@@ -1,8 +1,8 @@
 #include "flight/telemetry_series.h"
 
 #include "base/units.h"
-#include "flight/sources/derived_tracks.h"
-#include "flight/sources/log_family.h"
+#include "flight/families/derived_tracks.h"
+#include "flight/families/log_family.h"
 #include "telemetry/recordings.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_data.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "mechanical/flight_bins.h"
 
 #include <cstddef>

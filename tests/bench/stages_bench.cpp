@@ -1,5 +1,5 @@
 #include "flight/load_flight.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/selected_tracks.h"
 #include "log_passes.h"
 #include "mechanical/fit/phase_fit.h"

@@ -1,7 +1,7 @@
 #include "flight/column_map.h"
 
+#include "flight/families/mapped_csv.h"
 #include "flight/load_flight.h"
-#include "flight/sources/mapped_csv.h"
 #include "helpers/rejected.h"
 #include "helpers/selected_tracks.h"
 #include "helpers/table_flights.h"

@@ -2,7 +2,7 @@
 
 #include "base/csv.h"
 #include "flight/load_flight.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/test_paths.h"
 #include "synthetic/synthetic_flight.h"
 

@@ -4,7 +4,7 @@
 #include "telemetry/binary_log.h"
 
 #include "base/error.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/binary_definitions.h"

@@ -1,6 +1,6 @@
 // A series CSV with its front matter, to its phases.
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/series_file.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/selected_tracks.h"

@@ -1,6 +1,6 @@
 // A .data text without its .log, to the phases of every aircraft.
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/selected_tracks.h"

@@ -4,7 +4,7 @@
 #include "flight/flight_series.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/test_paths.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "synthetic/synthetic_log.h"
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/telemetry_series.h"
 #include "helpers/selected_tracks.h"
 

@@ -1,10 +1,10 @@
 #include "flight/select/power.h"
 
 #include "base/statistics.h"
+#include "flight/families/derived_tracks.h"
 #include "flight/select/device_check.h"
 #include "flight/select/device_sum.h"
 #include "flight/select/outliers.h"
-#include "flight/sources/derived_tracks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
+#include "flight/families/derived_tracks.h"
 #include "flight/flight_phases.h"
 #include "flight/select/candidates.h"
-#include "flight/sources/derived_tracks.h"
 
 #include <algorithm>
 #include <utility>

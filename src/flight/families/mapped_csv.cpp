@@ -1,11 +1,11 @@
-#include "flight/sources/mapped_csv.h"
+#include "flight/families/mapped_csv.h"
 
 #include "base/clock_time.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
-#include "flight/sources/log_family.h"
+#include "flight/families/log_family.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/log_configuration.h"
 

@@ -1,6 +1,6 @@
-#include "flight/segmentation/phase_edges.h"
+#include "flight/segment/phase_edges.h"
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/flown_points.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "flight/sources/mapped_csv.h"
+#include "flight/families/mapped_csv.h"
 
 #include "flight/load_flight.h"
 #include "helpers/rejected.h"

@@ -2,8 +2,8 @@
 
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/segmentation/flight_grid.h"
-#include "flight/segmentation/phase_edges.h"
+#include "flight/segment/flight_grid.h"
+#include "flight/segment/phase_edges.h"
 
 #include <string>
 

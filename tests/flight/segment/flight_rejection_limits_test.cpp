@@ -1,4 +1,4 @@
-#include "flight/segmentation/flight_rejection.h"
+#include "flight/segment/flight_rejection.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "flight/segmentation/motor_record.h"
+#include "flight/segment/motor_record.h"
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/flown_points.h"
 #include "helpers/selected_tracks.h"
 

@@ -1,5 +1,5 @@
 #include "base/units.h"
-#include "flight/sources/log_family.h"
+#include "flight/families/log_family.h"
 
 #include <algorithm>
 #include <cmath>

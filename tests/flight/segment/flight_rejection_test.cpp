@@ -1,4 +1,4 @@
-#include "flight/segmentation/flight_rejection.h"
+#include "flight/segment/flight_rejection.h"
 
 #include "flight/load_flight.h"
 #include "flight/series_file.h"

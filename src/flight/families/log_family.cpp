@@ -1,6 +1,6 @@
-#include "flight/sources/log_family.h"
+#include "flight/families/log_family.h"
 
-#include "flight/sources/derived_tracks.h"
+#include "flight/families/derived_tracks.h"
 
 #include <algorithm>
 #include <cmath>

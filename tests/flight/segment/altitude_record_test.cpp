@@ -1,7 +1,7 @@
-#include "flight/segmentation/altitude_record.h"
+#include "flight/segment/altitude_record.h"
 
 #include "base/error.h"
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "helpers/flown_points.h"
 
 #include <algorithm>

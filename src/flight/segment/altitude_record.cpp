@@ -1,4 +1,4 @@
-#include "flight/segmentation/altitude_record.h"
+#include "flight/segment/altitude_record.h"
 
 #include "flight/checks/runs.h"
 

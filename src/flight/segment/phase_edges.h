@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flight/flight_phases.h"
-#include "flight/segmentation/flight_grid.h"
+#include "flight/segment/flight_grid.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,12 +1,11 @@
-#include "flight/segmentation/hover_record.h"
+#include "flight/segment/hover_record.h"
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
-
-#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

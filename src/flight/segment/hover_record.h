@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flight/flight_data.h"
-#include "flight/segmentation/flight_grid.h"
-#include "flight/segmentation/phase_edges.h"
+#include "flight/segment/flight_grid.h"
+#include "flight/segment/phase_edges.h"
 
 #include <vector>
 

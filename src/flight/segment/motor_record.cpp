@@ -1,4 +1,4 @@
-#include "flight/segmentation/motor_record.h"
+#include "flight/segment/motor_record.h"
 
 #include "base/statistics.h"
 #include "base/units.h"

@@ -1,6 +1,6 @@
-#include "flight/segmentation/flight_grid.h"
+#include "flight/segment/flight_grid.h"
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/select.h"
 #include "helpers/flown_points.h"
 

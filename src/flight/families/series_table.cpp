@@ -1,4 +1,4 @@
-#include "flight/sources/series_table.h"
+#include "flight/families/series_table.h"
 
 #include "base/csv.h"
 #include "base/error.h"

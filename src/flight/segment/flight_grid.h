@@ -4,7 +4,7 @@
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 #include "flight/flight_series.h"
-#include "flight/segmentation/motor_record.h"
+#include "flight/segment/motor_record.h"
 
 #include <cstddef>
 #include <string>

@@ -1,10 +1,10 @@
-#include "flight/segmentation/flight_grid.h"
+#include "flight/segment/flight_grid.h"
 
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/flight_data.h"
-#include "flight/segmentation/altitude_record.h"
+#include "flight/segment/altitude_record.h"
 
 #include <algorithm>
 #include <cmath>

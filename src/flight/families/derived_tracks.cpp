@@ -1,4 +1,4 @@
-#include "flight/sources/derived_tracks.h"
+#include "flight/families/derived_tracks.h"
 
 #include "base/units.h"
 #include "flight/select/device_sum.h"

@@ -1,4 +1,4 @@
-#include "flight/sources/log_family.h"
+#include "flight/families/log_family.h"
 
 #include "base/input_file.h"
 #include "flight/flight_identity.h"

@@ -1,4 +1,4 @@
-#include "flight/segmentation/phase_edges.h"
+#include "flight/segment/phase_edges.h"
 
 #include "base/statistics.h"
 

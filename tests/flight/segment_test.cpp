@@ -1,4 +1,4 @@
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 
 #include "base/error.h"
 #include "flight/load_flight.h"

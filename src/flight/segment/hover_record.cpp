@@ -1,4 +1,4 @@
-#include "flight/segmentation/hover_record.h"
+#include "flight/segment/hover_record.h"
 
 #include "base/statistics.h"
 

@@ -1,8 +1,8 @@
-#include "flight/segmentation/flight_rejection.h"
+#include "flight/segment/flight_rejection.h"
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/segmentation/hover_record.h"
+#include "flight/segment/hover_record.h"
 #include "flight/select/outliers.h"
 #include "flight/series_file.h"
 

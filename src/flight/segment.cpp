@@ -1,10 +1,10 @@
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 
 #include "base/error.h"
-#include "flight/segmentation/flight_grid.h"
-#include "flight/segmentation/flight_rejection.h"
-#include "flight/segmentation/hover_record.h"
-#include "flight/segmentation/phase_edges.h"
+#include "flight/segment/flight_grid.h"
+#include "flight/segment/flight_rejection.h"
+#include "flight/segment/hover_record.h"
+#include "flight/segment/phase_edges.h"
 #include "flight/select.h"
 
 #include <algorithm>
