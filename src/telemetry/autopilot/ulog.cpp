@@ -266,8 +266,8 @@ class UlogReader {
         if (body.size() < 2) return rows_.skip(offset, body.size() + ulog_header_bytes);
         const auto found = subscriptions_.find(wire_number<std::uint16_t>(body.data()));
         if (found == subscriptions_.end() || found->second.first == nullptr) return;
-        const auto& [to, multi_id] = found->second;
-        auto& topic = *to;
+        auto& topic = *found->second.first;
+        const double multi_id = found->second.second;
         const auto data = body.substr(2);
         if (!topic.clock) return;
         const auto& last = topic.fields.back();
