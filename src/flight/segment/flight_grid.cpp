@@ -108,7 +108,8 @@ std::vector<double> shown_speed(const Track& speed, const std::vector<double>& t
 /// An aircraft whose motor runs on both sides of a jump flies on: these do not separate pieces.
 void keep_jumps_in_flight(ResampledFlight& grid, const Track& motor_percent, CleanedAltitude& record) {
     if (motor_percent.empty()) return;
-    const auto& [name, source, device, since_s, time_s, altitude_m] = record.altitude;
+    const auto& time_s = record.altitude.time_s;
+    const auto& altitude_m = record.altitude.value;
     const auto runs_at = [&](double t) { return value_at(motor_percent, t) > idle_motor_percent(grid, {}); };
     std::erase_if(record.jumps_s, [&](double t) {
         const auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, t) - time_s.begin());
