@@ -178,6 +178,16 @@ TEST(CommandSampler, TakesAProgramThatGoesOnAndOneThatPrintsOnce) {
     }
 }
 
+/// Programs that print through stdio then flush each line. The terminal changes nothing of what they print.
+TEST(CommandSampler, GivesAProgramATerminal) {
+    SamplerSettings settings;
+    settings.kind = SamplerKind::command;
+    settings.command = {"sh", "-c", "[ -t 1 ] || exit 9; printf '7.5\\n8.5\\r\\n9.5\\n'; sleep 60"};
+    const auto readings = read_some(open_sampler(settings), 3);
+    ASSERT_EQ(readings.size(), 3U);
+    EXPECT_EQ(readings[2].power_w, 9.5);
+}
+
 TEST(CommandSampler, RefusesWhatIsNoPower) {
     SamplerSettings settings;
     settings.kind = SamplerKind::command;

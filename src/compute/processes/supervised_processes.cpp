@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -34,6 +37,12 @@ OutputError process_error(int error) {
     return OutputError(fmt::format("cannot start a process: {}", std::strerror(error)));
 }
 
+/// The groups of the commands of all objects.
+std::set<::pid_t>& all_groups() {
+    static std::set<::pid_t> groups;
+    return groups;
+}
+
 /// Whether a process of the group is alive; reaps those that have ended.
 bool is_alive(::pid_t group) {
     while (::waitpid(-group, nullptr, WNOHANG) > 0) {
@@ -42,6 +51,32 @@ bool is_alive(::pid_t group) {
 }
 
 }  // namespace
+
+/// A process of this machine.
+struct SupervisedProcesses::Process {
+    ::pid_t id = 0;
+    ::pid_t parent = 0;
+    ::pid_t group = 0;
+    char state = '?';  ///< 'Z': it has ended and is not reaped
+    std::string name;
+
+    static std::vector<Process> all() {
+        std::vector<Process> found;
+        std::error_code ended;
+        for (std::filesystem::directory_iterator it("/proc", ended), end; it != end; it.increment(ended)) {
+            std::ifstream file(it->path() / "stat");  // "321 (name) S parent group ..."
+            std::string text;
+            std::getline(file, text, '\0');
+            const auto name = text.find('(');
+            const auto rest = text.rfind(')');
+            if (rest == std::string::npos) continue;
+            Process process{std::atoi(text.c_str()), 0, 0, '?', text.substr(name + 1, rest - name - 1)};
+            std::istringstream(text.substr(rest + 1)) >> process.state >> process.parent >> process.group;
+            found.push_back(std::move(process));
+        }
+        return found;
+    }
+};
 
 std::string to_string(const FinishedCommand& ended) {
     if (ended.start_error != 0) {
@@ -54,9 +89,14 @@ std::string to_string(const FinishedCommand& ended) {
 }
 
 SupervisedProcesses::SupervisedProcesses(const SupervisionOptions& options)
-    : kill_timeout_(options.kill_timeout), poll_fd_(::epoll_create1(EPOLL_CLOEXEC)) {
+    : kill_timeout_(options.kill_timeout),
+      owns_orphans_(options.owns_orphans),
+      poll_fd_(::epoll_create1(EPOLL_CLOEXEC)) {
     if (poll_fd_ < 0) throw process_error(errno);
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // reaps orphans also where no init does
+    ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+    if (!owns_orphans_) return;
+    for (const auto& process : Process::all())
+        if (process.parent == ::getpid()) strangers_.insert(process.id);
 }
 
 SupervisedProcesses::SupervisedProcesses(const std::vector<std::vector<std::string>>& commands,
@@ -96,6 +136,7 @@ void SupervisedProcesses::start(const std::vector<std::string>& words, const Sup
     if (error) return void(not_started_.push_back({error.value(), 0, Clock::now()}));
     const auto child = process.id();
     process.detach();
+    all_groups().insert(child);
     const auto file = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
     commands_.push_back({child, file});
     ::epoll_event event{EPOLLIN, {}};
@@ -113,41 +154,82 @@ std::vector<FinishedCommand> SupervisedProcesses::ended() {
     return all;
 }
 
-ShutdownReport SupervisedProcesses::end() {
+ShutdownReport SupervisedProcesses::end(const std::function<void()>& waiting) {
     ShutdownReport report;
     ended();
-    report.left_processes = std::ranges::any_of(
-        commands_, [](const Command& command) { return command.process < 0 && is_alive(command.group); });
+    const bool has_ended = std::ranges::any_of(commands_, [](const Command& command) { return command.process < 0; });
+    report.left_processes =
+        has_ended &&
+        (std::ranges::any_of(commands_, [](const Command& c) { return c.process < 0 && is_alive(c.group); }) ||
+         std::ranges::any_of(orphans(), [](const Process& left) { return left.parent == ::getpid(); }));
     signal_all(SIGTERM);
-    if (!wait_for_end(kill_timeout_)) {
+    if (!wait_for_end(kill_timeout_, waiting)) {
         report.killed = true;
-        signal_all(SIGKILL);
-        wait_for_end(kill_patience);
+        const auto kill = [&] {
+            signal_all(SIGKILL);  // also those that were forked since
+            waiting();
+        };
+        if (!wait_for_end(kill_patience, kill)) {
+            const auto left = orphans();
+            report.survivor = left.empty() ? fmt::format("a process of group {}", commands_.front().group)
+                                           : fmt::format("process {} ({})", left.front().id, left.front().name);
+        }
     }
-    for (const auto& command : commands_)
+    for (const auto& command : commands_) {
         if (command.process >= 0) ::close(command.process);
+        all_groups().erase(command.group);
+    }
     commands_.clear();
     return report;
+}
+
+/// The processes that the commands have started and that left their groups: those below this program that belong to no
+/// group of commands and were not there before. Reaps those that have ended.
+std::vector<SupervisedProcesses::Process> SupervisedProcesses::orphans() const {
+    if (!owns_orphans_ || commands_.empty()) return {};
+    std::set<::pid_t> tree;
+    for (const auto& command : commands_) tree.insert(command.group);
+    const auto all = Process::all();
+    const auto is_in_tree = [&](const Process& process) {
+        const bool is_adopted =
+            process.parent == ::getpid() && !strangers_.contains(process.id) && !all_groups().contains(process.group);
+        return is_adopted || tree.contains(process.parent) || tree.contains(process.group);
+    };
+    for (auto before = tree.size() + 1; before != tree.size();) {
+        before = tree.size();
+        for (const auto& process : all)
+            if (is_in_tree(process)) tree.insert(process.id);
+    }
+    std::vector<Process> found;
+    for (const auto& process : all) {
+        if (!tree.contains(process.id) || all_groups().contains(process.group)) continue;
+        if (process.state == 'Z' && ::waitpid(process.id, nullptr, WNOHANG) == process.id) continue;
+        found.push_back(process);
+    }
+    return found;
 }
 
 bool SupervisedProcesses::any_lives() const {
     bool any = false;
     for (const auto& command : commands_) any = is_alive(command.group) || any;  // reaps of all
-    return any;
+    return any || !orphans().empty();
 }
 
-bool SupervisedProcesses::wait_for_end(std::chrono::milliseconds patience) const {
+bool SupervisedProcesses::wait_for_end(std::chrono::milliseconds patience, const std::function<void()>& waiting) const {
     constexpr std::chrono::milliseconds interval(5);
     const auto until = Clock::now() + patience;
     while (any_lives()) {
         if (Clock::now() >= until) return false;
+        waiting();
         std::this_thread::sleep_for(interval);
     }
     return true;
 }
 
 void SupervisedProcesses::signal_all(int signal) const {
+    const auto left = orphans();  // before their parents end
     for (const auto& command : commands_) ::kill(-command.group, signal);
+    for (const auto& process : left) ::kill(process.id, signal);
 }
 
 }  // namespace flightwatt::compute

@@ -4,18 +4,35 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace flightwatt::compute {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// A pseudo terminal without echo and translations: programs that print through stdio flush each line into it, into a
+/// pipe only each block. `ends`: ours, the program's. Returns false with errno without one.
+bool open_terminal(int (&ends)[2]) {
+    std::array<char, 128> name{};
+    ends[0] = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (ends[0] < 0 || ::grantpt(ends[0]) != 0 || ::unlockpt(ends[0]) != 0 ||
+        ::ptsname_r(ends[0], name.data(), name.size()) != 0)
+        return false;
+    ends[1] = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    ::termios settings{};
+    if (ends[1] < 0 || ::tcgetattr(ends[1], &settings) != 0) return false;
+    ::cfmakeraw(&settings);
+    return ::tcsetattr(ends[1], TCSANOW, &settings) == 0 && ::fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0;
+}
 
 class CommandSampler {
   public:
@@ -48,17 +65,16 @@ class CommandSampler {
 
     void start() {
         int ends[2] = {-1, -1};
-        if (::pipe2(ends, O_CLOEXEC) != 0) {
-            throw OutputError(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+        if (!open_terminal(ends)) {
+            throw OutputError(fmt::format("cannot make a pseudo terminal: {}", std::strerror(errno)));
         }
         output_ = ends[0];
-        ::fcntl(output_, F_SETFL, O_NONBLOCK);
         started_ = Clock::now();
         lines_ = 0;
         pending_.clear();
         constexpr std::chrono::milliseconds patience(500);  // no cleanup to wait for
         running_.emplace(std::vector<std::vector<std::string>>{command_},
-                         SupervisionOptions{ends[1], STDERR_FILENO, patience, folder_});
+                         SupervisionOptions{ends[1], STDERR_FILENO, patience, folder_, false});
         ::close(ends[1]);
     }
 
