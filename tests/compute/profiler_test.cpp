@@ -50,13 +50,15 @@ class Profiler : public testing::Test {
     }
 };
 
-/// A meter that tells 2 W, and 2 W more for a file named `busy`, which a component makes of its argument.
-/// A busy machine needs its time to start either.
+/// A meter that tells 2 W, or what a component writes into a file named `busy`. A busy machine needs its time to start
+/// either: powers of a component that does are compared in the study alone.
 constexpr const char* meter =
     "idle_s = 1\nduration_s = 1\n[sampler]\ninterval_s = 0.02\n"
     "command = ['sh', '-c', 'while :; do cat busy 2>/dev/null || echo 2; sleep 0.02; done']\n";
 
-TEST_F(Profiler, WritesLayersThatMissionsRead) {
+class ProfilerStudy : public Profiler {};
+
+TEST_F(ProfilerStudy, WritesLayersThatMissionsRead) {
     write("p.toml", std::string(meter) +
                         "repeats = 2\n"
                         "[components.load]\ncommand = ['sh', '-c', 'trap \"rm -f busy; exit\" TERM; echo {w} > busy; "
@@ -83,6 +85,17 @@ TEST_F(Profiler, WritesLayersThatMissionsRead) {
     EXPECT_GE(samples.time_s.front(), 2.0);
     EXPECT_EQ(samples.power_w.front(), 5.0);
     EXPECT_EQ(test::processes_with(folder.string()), 0);
+}
+
+/// A worker that leaves its component's session does not add its power to later runs.
+TEST_F(ProfilerStudy, MeasuresEachComponentAlone) {
+    write("p.toml", std::string(meter) +
+                        "[components.a]\ncommand = ['sh', '-c', \"setsid sh -c 'trap \\\"rm -f busy; exit\\\" "
+                        "TERM; while :; do echo 50 > busy; sleep 0.01; done' & sleep 60\"]\nwarm_up_s = 2\n"
+                        "[components.b]\ncommand = ['sleep', '60']\n");
+    ASSERT_EQ(profile("p.toml"), 0) << text("stderr");
+    EXPECT_NEAR(power_w(read_power_profile(folder / "out/a.csv"), {}), 50.0, 1.0);
+    EXPECT_NEAR(power_w(read_power_profile(folder / "out/b.csv"), {}), 2.0, 1e-9);
 }
 
 TEST_F(Profiler, GoesOnPastThoseThatFail) {
@@ -168,8 +181,6 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
 /// A component that burns a random share of the processor and keeps account of it, and a meter of 5 W plus
 /// 10 W times the share that the kernel says it got. It needs a processor of its own: a busy machine gives it too few
 /// slots to compare.
-class ProfilerStudy : public Profiler {};
-
 TEST_F(ProfilerStudy, IsWithinItsStandardErrorOfALoadThatIsKnown) {
     write("load.py", R"(
 import os, random, sys, time
