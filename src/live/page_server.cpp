@@ -119,6 +119,7 @@ struct PageServer::Session {
         : stream(std::move(socket)), more(stream.get_executor(), asio::steady_timer::time_point::max()) {}
 
     void send(std::string_view text) {
+        if (outgoing.size() > max_unsent_bytes) return;  // it is closed, and ends soon
         outgoing += text;
         if (outgoing.size() > max_unsent_bytes) stream.close();
         more.cancel();
