@@ -18,9 +18,10 @@ namespace {
 constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
 constexpr std::string_view error_column = "standard_error_w";
+constexpr std::string_view total_column = "total_power_w";
 /// Columns that may follow power_w in a CSV of `flightwatt profile`.
 constexpr std::string_view evidence_columns[] = {
-    error_column, "total_power_w", "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", "source"};
+    error_column, total_column, "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", "source"};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -182,6 +183,19 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
     }
     for (const auto& cell : cells) table.columns.push_back(cell.text);
     return profile_of(table, 1, columns_of_header(table));
+}
+
+double excluded_idle_w(const std::filesystem::path& path) {
+    if (path.extension() == ".cfg") return 0.0;
+    const auto table = read_csv(path, CsvHeader::absent);
+    const auto& names = table.rows.front().cells;
+    const auto power = std::ranges::find(names, power_column, &CsvTable::Cell::text) - names.begin();
+    const auto total = std::ranges::find(names, total_column, &CsvTable::Cell::text) - names.begin();
+    if (std::max(power, total) == std::ssize(names) || table.rows.size() < 2) return 0.0;
+    const auto of_first = [&](auto column) {
+        return cell_number(table, table.rows[1], static_cast<std::size_t>(column));
+    };
+    return of_first(total) - of_first(power);
 }
 
 }  // namespace flightwatt::compute

@@ -28,4 +28,7 @@ struct ProfileNaming {
 /// Throws InputError for another format, names that do not fit, and as make_power_profile.
 PowerProfile read_power_profile(const std::filesystem::path& path, const ProfileNaming& naming = {});
 
+/// Power [W] of the idle computer that a profile of `flightwatt profile` excludes (above_idle); 0 of other profiles.
+double excluded_idle_w(const std::filesystem::path& path);
+
 }  // namespace flightwatt::compute

@@ -167,5 +167,16 @@ TEST(ProfileReader, ReadsTheRealTrackingProfileInAllItsForms) {
     EXPECT_EQ(power_w(layer2, {4.0, 0.5}), 6.30497);
 }
 
+TEST(ExcludedIdle, IsTheTotalLessThePower) {
+    const auto excluded_w = [folder = test::scratch_dir()](const char* text) {
+        test::write_text(folder / "p.csv", text);
+        return excluded_idle_w(folder / "p.csv");
+    };
+    EXPECT_DOUBLE_EQ(excluded_w("# above idle\nfps,power_w,total_power_w\n1,2.5,8\n2,3.5,9\n"), 5.5);
+    EXPECT_EQ(excluded_w("fps,power_w,total_power_w\n1,8,8\n"), 0.0);
+    EXPECT_EQ(excluded_w("fps,power_w\n1,8\n"), 0.0);
+    EXPECT_EQ(excluded_w("200,100\n1,8\n"), 0.0);
+}
+
 }  // namespace
 }  // namespace flightwatt::compute

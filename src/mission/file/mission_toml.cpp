@@ -136,17 +136,35 @@ compute::Component read_component(const TomlTable& table, const std::string& nam
     return {name, read_power_profile(file_of(table, "profile"), naming)};
 }
 
+/// Adds a note where a profile is above the idle computer and no other component draws what that does.
+void note_missing_idle(const std::vector<double>& excluded_idle_w, MissionSetup& mission) {
+    constexpr double least_of_idle = 0.5;  // idle power differs less between days
+    const auto above = std::ranges::max_element(excluded_idle_w);
+    if (above == excluded_idle_w.end() || *above <= 0.0) return;
+    double others_w = 0.0;
+    for (std::size_t i = 0; i < excluded_idle_w.size(); ++i)
+        if (excluded_idle_w[i] <= 0.0) others_w += std::ranges::min(mission.compute.components[i].profile.power_w);
+    if (others_w >= least_of_idle * *above) return;
+    mission.notes.push_back(fmt::format(
+        "the profile of {} is above the idle computer, whose {:.3g} W no component draws: add the idle.csv of "
+        "its folder as a component, and run it",
+        mission.compute.components[static_cast<std::size_t>(above - excluded_idle_w.begin())].name, *above));
+}
+
 void read_components(const TomlTable& root, MissionSetup& mission) {
     const auto components = root.optional_table("components");
     if (!components) return;
+    std::vector<double> excluded_w;
     for (const auto& name : components->keys()) {
         const auto table = components->table(name);
         mission.compute.components.push_back(read_component(table, name));
+        excluded_w.push_back(compute::excluded_idle_w(file_of(table, "profile")));
         std::optional<Utility> utility;
         if (const auto stated = table.optional_table("utility"))
             utility = read_utility(*stated, mission.compute.components.back().profile);
         mission.utilities.push_back(std::move(utility));
     }
+    note_missing_idle(excluded_w, mission);
 }
 
 std::optional<double> optional_sd_percent(const TomlTable& table, std::string_view key) {
