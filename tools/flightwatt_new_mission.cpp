@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <boost/algorithm/string.hpp>
 #include <fmt/format.h>
 
 namespace {
@@ -41,6 +42,7 @@ struct NewMissionArguments {
     std::optional<std::string> model;
     std::optional<std::string> battery;
     std::vector<std::string> profiles;
+    std::optional<std::string> parameters;
     bool is_planned = false;
     std::optional<std::string> name;
 };
@@ -75,14 +77,18 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
     fresh.is_planned = arguments.is_planned;
+    compute::ProfileNaming naming;
+    naming.where.file = "new-mission --parameters A,B";
+    if (arguments.parameters) boost::algorithm::split(naming.parameters, *arguments.parameters, boost::is_any_of(","));
     for (const auto& profile : arguments.profiles) {
         fresh.components.push_back({component_name(profile, fresh.components), named_from(folder, profile),
-                                    compute::read_power_profile(profile)});
+                                    compute::read_power_profile(profile, naming)});
     }
     if (fresh.is_planned && fresh.components.empty()) {
         throw UsageError("--plan: expected --profile FILE of the software whose schedule is to be planned");
     }
-    const auto text = new_mission_toml(fresh);
+    auto text = new_mission_toml(fresh);
+    if (arguments.parameters) boost::algorithm::replace_all(text, "\n#parameters = [", "\nparameters = [");
     const auto read = mission::parse_mission(text, file, {.allow_unplanned = fresh.is_planned});
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
@@ -119,6 +125,8 @@ mission as a comment, with its meaning and an example. An existing file is not r
     options.add("battery", arguments.battery, cli::input_file("PACK.toml"), "its pack, from flightwatt battery");
     options.add("profile", arguments.profiles, cli::input_file("FILE"),
                 "software on board, from flightwatt profile; may be given several times");
+    options.add("parameters", arguments.parameters, {.value = "A,B", .needs = {"profile"}},
+                "names of the profiles' parameters, where these have flags (powprofiler)");
     options.add("plan", arguments.is_planned,
                 "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
     options.add("name", arguments.name, {.value = "NAME"}, "the mission's name; default: FILE's");
