@@ -60,7 +60,8 @@ bool is_there(const std::filesystem::path& path) {
     return std::filesystem::exists(path, unknown);
 }
 
-/// Names this run's logs. Returns the names of the earlier flights that are among them.
+/// Names this run's logs: as before, or with `prune` as a batch of them alone. Returns the names of the earlier flights
+/// that are among them and keep their names.
 std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const std::vector<LogFile>& earlier,
                                                bool prune) {
     std::unordered_map<std::string_view, const LogFile*> by_place;
@@ -79,7 +80,7 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
     UniqueNames names;
     std::vector<LogFile*> without_name;
     for (auto& log : logs) {
-        const auto* before = log.problem.empty() ? find(log) : nullptr;
+        const auto* before = log.problem.empty() && !prune ? find(log) : nullptr;
         if (before != nullptr && known.insert(before->flight).second) {
             log.flight = before->flight;
             names.reserve(log.flight);
@@ -89,7 +90,11 @@ std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const
     }
     if (!prune)
         for (const auto& flight : earlier) names.reserve(flight.flight);
-    for (auto* log : without_name) log->flight = names.assign(log->path);
+    for (auto* log : without_name) {
+        log->flight = names.assign(log->path);
+        const auto* before = log->problem.empty() && prune ? find(*log) : nullptr;
+        if (before != nullptr && before->flight == log->flight) known.insert(before->flight);
+    }
     return known;
 }
 
@@ -98,7 +103,10 @@ void add_earlier(LogFile flight, bool prune, BatchPlan& plan, std::vector<LogFil
     if (canonical_path(flight.path) != flight.place) flight.path = flight.place;  // run from another folder
     flight.is_of_this_run = false;
     flight.is_missing = !is_there(flight.path);
-    const auto state = flight.is_missing ? "is missing" : "is not in this batch";
+    const auto now = std::ranges::find(logs, flight.place, &LogFile::place);
+    const auto state = flight.is_missing   ? "is missing"
+                       : now != logs.end() ? fmt::format("is flight {} now", now->flight)
+                                           : "is not in this batch";
     if (prune)
         plan.dropped.push_back({flight.flight, fmt::format("its log {} {}", flight.path, state)});
     else

@@ -130,6 +130,28 @@ TEST(BatchPlan, SaysWhatIsDropped) {
                             "opterra_synthetic_02, its log " + in + "/opterra_synthetic_02.data is not in this batch"));
 }
 
+TEST(BatchPlan, NamesFlightsAfterPruningAsANewBatchDoes) {
+    const auto folder = test::scratch_dir();
+    const auto path = [&](const char* name) { return (folder / name / "x.data").string(); };
+    for (const auto* name : {"b", "c"}) {
+        std::filesystem::create_directories(folder / name);
+        write_text(path(name), "");
+    }
+    write_manifest(
+        {listed("x", path("a"), path("a")), listed("x_2", path("b"), path("b")), listed("x_3", path("c"), path("c"))},
+        folder);
+    const std::vector<LogFile> logs{{path("b"), "x"}, {path("c"), "x"}};
+    const auto kept = plan_batch(logs, folder, false);
+    EXPECT_EQ(kept.flights.size(), 3U);
+    const auto plan = plan_batch(logs, folder, true);
+    ASSERT_EQ(plan.flights.size(), 2U);
+    EXPECT_EQ(plan.flights[0].flight + " " + plan.flights[0].path, "x " + path("b"));
+    EXPECT_EQ(plan.flights[1].flight + " " + plan.flights[1].path, "x_2 " + path("c"));
+    EXPECT_THAT(words(plan.dropped),
+                ElementsAre("x, its log " + path("a") + " is missing", "x_2, its log " + path("b") + " is flight x now",
+                            "x_3, its log " + path("c") + " is flight x_2 now"));
+}
+
 TEST(BatchPlan, KnowsLogsAgainInAFolderThatMoved) {
     const auto folder = test::scratch_dir();
     for (const auto* name : {"here", "there"}) std::filesystem::create_directories(folder / name);
