@@ -1,0 +1,10 @@
+// Waypoints in GeoJSON, and areas in GeoJSON and KML, flown in a wind.
+
+#include "fuzz/flown_plan.h"
+#include "fuzz/fuzz_target.h"
+
+void flightwatt::fuzz::run(std::string_view bytes) {
+    const bool is_area = bytes.starts_with('<') || bytes.find("Polygon") != std::string_view::npos;
+    if (is_area) return fly(path::parse_area(bytes, "fuzz.kml", 50.0, 30.0));
+    fly({path::parse_geojson(bytes, "fuzz.geojson")});
+}
