@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "battery/identification/circuit_problem.h"
 #include "battery/identification/open_circuit.h"
+#include "battery/identification/voltage_forecast.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@
 #include <mutex>
 #include <utility>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
 namespace flightwatt::battery {
@@ -59,12 +59,64 @@ void add_health(FittedFlights& fitted, bool with_capacities) {
     widen_by_flights(fitted.resistances, fitted.aligned.fit.resistance_ohm, fitted.errors.resistance_ohm);
 }
 
-ObservedOcv shown_curve(const FittedFlights& fitted) {
-    const auto& fit = fitted.aligned.fit;
+/// The charge down to which flights determine the curve, with its standard error.
+struct CurveEnd {
+    double charge_ah = 0.0;
+    double error_ah = 0.0;
+};
+
+/// Returns where the last flight ends that begins at a charge known within a quarter of the curve, or that drew so much
+/// itself. Where the curve is flat, the charge at which a flight began may be any; the curve's end, and with it a
+/// capacity, must not rest on it.
+CurveEnd determined_end(const FittedFlights& fitted) {
+    constexpr double known_fraction = 0.25;  // chosen with the M100's packs in view
+    const double last_ah = fitted.aligned.fit.knots_ah.back();
+    CurveEnd end;
+    for (std::size_t f = 0; f < fitted.aligned.records.size(); ++f) {
+        const auto& [record, initial_ah, rest_v, own_ohm, log_capacity] = fitted.aligned.records[f];
+        const bool is_fixed = f == fitted.aligned.reference;
+        const double error_ah = is_fixed ? 0.0 : fitted.errors.initial_charge_error_ah[f];
+        const bool is_known = normal_half_width() * error_ah <= known_fraction * last_ah;
+        const CurveEnd own{record->charge_ah.back() + (is_known ? initial_ah : 0.0), is_known ? error_ah : 0.0};
+        if (own.charge_ah > end.charge_ah) end = own;
+    }
+    return {std::min(end.charge_ah, last_ah), end.error_ah};
+}
+
+/// Widens the interval of a capacity by the error of the charge over which the curve was compared with a chart: as that
+/// charge, the capacity is a factor too great or too small.
+void widen_by_end(Capacity& capacity, const CurveEnd& end) {
+    if (!capacity.interval_ah) return;
+    const double by = normal_half_width() * end.error_ah / end.charge_ah;
+    const auto factor = [&](double bound_ah) { return std::exp(std::hypot(std::log(bound_ah / capacity.value_ah), by)); };
+    capacity.interval_ah = Interval{capacity.value_ah / factor(capacity.interval_ah->low),
+                                    capacity.value_ah * factor(capacity.interval_ah->high)};
+}
+
+/// Cuts a curve and its errors at a charge, where they get a knot.
+void cut_curve(CircuitFit& fit, CircuitErrors& errors, double end_ah) {
+    if (end_ah >= fit.knots_ah.back()) return;
+    const auto [lower, fraction] = find_knot_interval(fit.knots_ah, end_ah);
+    const auto knots = static_cast<Eigen::Index>(lower) + 2;
+    Eigen::MatrixXd between = Eigen::MatrixXd::Identity(knots, static_cast<Eigen::Index>(fit.knots_ah.size()));
+    between.bottomRows(1).setZero();
+    between(knots - 1, knots - 2) = 1.0 - fraction;
+    between(knots - 1, knots - 1) = fraction;
+    const auto cut = [&](std::vector<double>& values) {
+        const Eigen::VectorXd kept = between * Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
+        values.assign(kept.begin(), kept.end());
+    };
+    cut(fit.knots_ah);
+    cut(fit.open_circuit_v);
+    cut(errors.open_circuit_standard_error_v);
+    errors.open_circuit_covariance_v2 = between * errors.open_circuit_covariance_v2 * between.transpose();
+}
+
+ObservedOcv shown_curve(const FittedFlights& fitted, const CircuitFit& fit, const CircuitErrors& errors) {
     const auto& reference = fitted.aligned.records[fitted.aligned.reference];
     return {fit.knots_ah,
             fit.open_circuit_v,
-            fitted.errors.open_circuit_covariance_v2,
+            errors.open_circuit_covariance_v2,
             reference.initial_charge_ah,
             reference.record->resting_voltage_v,
             fit.weights.cells};
@@ -101,6 +153,7 @@ struct IdentificationResult {
     BatteryIdentification identification;
     FittedFlights fitted;
     std::vector<CapacityHypothesis> posterior;
+    CurveEnd end;
 };
 
 int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
@@ -131,15 +184,19 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
     IdentificationResult common;
     common.fitted.errors = circuit_errors(aligned);
     common.fitted.aligned = std::move(aligned);
-    common.posterior = capacity_posterior(shown_curve(common.fitted), options.capacity_ah);
+    auto curve = common.fitted.aligned.fit;
+    auto& errors = common.identification.errors = common.fitted.errors;
+    common.end = determined_end(common.fitted);
+    cut_curve(curve, errors, common.end.charge_ah);
+    common.posterior = capacity_posterior(shown_curve(common.fitted, curve, errors), options.capacity_ah);
     if (common.posterior.empty()) refuse_capacity(common.fitted.aligned, options.capacity_ah.value_or(0.0));
-    const auto& [identification, fitted, posterior] = common;
+    const auto& [identification, fitted, posterior, end] = common;
     auto& result = common.identification;
-    const auto& fit = result.fit = fitted.aligned.fit;
-    const auto& errors = fitted.errors;
+    const auto& fit = result.fit = std::move(curve);
     result.cells = fit.weights.cells;
     result.cells_are_given = options.cells.has_value();
     result.capacity = estimate_capacity(fit.knots_ah.back(), posterior, options.capacity_ah);
+    widen_by_end(result.capacity, end);
     result.chemistry = most_probable_chemistry(posterior);
     result.curve_start_depletion_ah = estimate_depletion_ah(posterior);
     const auto extended = extrapolate_curve(fit, errors.open_circuit_standard_error_v, result.chemistry,
@@ -163,14 +220,16 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
 
 /// The capacity that the flights indicate without a given one; nullptr where they drew too little.
 std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& common) {
-    const auto& [identification, fitted, posterior] = common;
+    const auto& [identification, fitted, posterior, end] = common;
     const auto& fit = identification.fit;
     const bool is_given = identification.capacity.origin == CapacityOrigin::given;
     auto estimate = std::make_shared<FlightEstimate>();
     for (const auto& aligned : fitted.aligned.records) estimate->flights.push_back(aligned.record->flight);
     try {
-        const auto free = is_given ? capacity_posterior(shown_curve(fitted), std::nullopt) : posterior;
-        const auto capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
+        const auto free =
+            is_given ? capacity_posterior(shown_curve(fitted, fit, identification.errors), std::nullopt) : posterior;
+        auto capacity = estimate_capacity(fit.knots_ah.back(), free, std::nullopt);
+        widen_by_end(capacity, end);
         estimate->capacity_ah = capacity.value_ah;
         estimate->capacity_interval_ah = capacity.interval_ah.value();
         if (!is_given) return estimate;
@@ -215,43 +274,6 @@ double root_mean_square(const Eigen::VectorXd& values) {
     return values.norm() / std::sqrt(std::max(1.0, static_cast<double>(values.size())));
 }
 
-/// The voltage of a record in flight, predicted `ahead_s` before each sample: offset, resistance and slope of the curve
-/// follow the samples from the first load to then (docs/methods.md, Eq. 27c).
-std::vector<double> predict_voltage_ahead(const Battery& battery, const DischargeRecord& record,
-                                          const std::vector<double>& model_v, double ahead_s) {
-    constexpr double memory_s = 20.0;          // a sample counts by exp(-age / memory_s)
-    constexpr double slope_sd_v = 0.6;         // a cell, of the fall of the curve from full to empty
-    constexpr double sample_sd_v = 0.01;       // a cell, of the voltage about the circuit
-    constexpr double sample_settling_s = 3.0;  // for which neighbours share that error
-    const auto first = record.rest_samples;
-    const int cells = battery.cells.value_or(1);
-    const auto settled_a = rc_branch_current_a(record, battery.thevenin.value().rc_time_constant_s);
-    const auto row = [&](std::size_t i) {  // derivatives by offset [V], relative resistance and slope [V/Ah]
-        const double rc_v = battery.thevenin->rc_resistance_ohm * settled_a[i];
-        return Eigen::Vector3d(1.0, -battery.resistance_ohm * record.current_a[i] - rc_v,
-                               record.charge_ah[first] - record.charge_ah[i]);
-    };
-    const Eigen::Vector3d prior_sd(cells * chart_sd_v, default_scatter_fraction,
-                                   cells * slope_sd_v / battery.capacity_ah);
-    const Eigen::Matrix3d prior = prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d score = Eigen::Vector3d::Zero();
-    auto voltage_v = model_v;
-    std::size_t next = first;  // the first sample that is not known yet
-    for (std::size_t i = first; i < voltage_v.size(); ++i) {
-        for (; record.time_s[next] <= record.time_s[i] - ahead_s; ++next) {
-            const double step_s = record.time_s[next] - record.time_s[std::max<std::size_t>(next, 1) - 1];
-            const double decay = std::exp(-step_s / memory_s);
-            const double share = record.used[next] ? std::min(step_s / sample_settling_s, 1.0) : 0.0;
-            const Eigen::Vector3d weighted = share / std::pow(cells * sample_sd_v, 2) * row(next);
-            information = decay * information + weighted * row(next).transpose();
-            score = decay * score + (record.voltage_v[next] - model_v[next]) * weighted;
-        }
-        if (next > first) voltage_v[i] += row(i).dot((prior + information).inverse() * score);
-    }
-    return voltage_v;
-}
-
 double beyond_percent(const BatteryIdentification& identified, const DischargeRecord& record,
                       const PredictedVoltage& predicted) {
     double beyond = 0.0;
@@ -260,21 +282,54 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
     return units::percentage(beyond, static_cast<double>(used_sample_count(record)));
 }
 
-LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record) {
+/// Standard deviation [Ah] of a charge that is inferred from the resting voltage: packs relax differently, by what the
+/// prior of the rest offset permits (circuit_problem.h).
+double resting_charge_sd_ah(const DischargeRecord& record, const JointCircuitFit& aligned, double initial_charge_ah) {
+    const auto& fit = aligned.fit;
+    const double below_v = fit.weights.fullest_rest_v - record.resting_voltage_v;
+    const double rest_sd_v = std::hypot(fit.weights.cells * charged_rest_sd_v, lower_rest_fraction * below_v,
+                                        record.resolution_v);
+    // The slope of the curve from there on, over a tenth of the charge that it covers.
+    const double over_ah = 0.1 * fit.knots_ah.back();
+    const double from_ah = std::clamp(initial_charge_ah, 0.0, fit.knots_ah.back() - over_ah);
+    const double fall_v = interpolate_clamped(fit.knots_ah, fit.open_circuit_v, from_ah) -
+                          interpolate_clamped(fit.knots_ah, fit.open_circuit_v, from_ah + over_ah);
+    return std::min(rest_sd_v / std::max(fall_v, unreadable_v) * over_ah, fit.knots_ah.back());
+}
+
+/// Checks a record by the battery of other flights, whose mean power under load is `others_w`.
+LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record,
+                         const std::optional<double>& others_w) {
     const auto& identified = common.identification;
+    const auto& aligned = common.fitted.aligned;
     LeaveOneOutCheck check;
     check.flight = record.flight;
-    check.initial_charge_ah = identified.curve_start_depletion_ah + resting_charge_ah(record, common.fitted.aligned);
+    const double resting_ah = resting_charge_ah(record, aligned);
+    check.initial_charge_ah = identified.curve_start_depletion_ah + resting_ah;
     const auto predicted = predict_voltage(identified.battery, record, check.initial_charge_ah);
+    const ModelledRecord modelled{&identified.battery, &record, predicted.soc_percent, predicted.voltage_v,
+                                  resting_charge_sd_ah(record, aligned, resting_ah)};
     check.voltage_rms_v =
         root_mean_square(errors_v(predicted.voltage_v, record, 0, identified.fit.common_rest_offset_v));
     const auto under_load = errors_v(predicted.voltage_v, record, record.rest_samples);
     check.load_rms_v = root_mean_square(under_load);
     check.load_mean_error_v = under_load.cwiseAbs().mean();
+    double held = 0.0;
+    const auto half_v = voltage_half_widths_v(modelled);
+    for (auto i = record.rest_samples; i < half_v.size(); ++i) {
+        if (!record.used[i]) continue;
+        check.load_half_width_v += half_v[i] / static_cast<double>(under_load.size());
+        if (std::abs(record.voltage_v[i] - predicted.voltage_v[i]) <= half_v[i]) ++held;
+    }
+    check.load_held_percent = units::percentage(held, static_cast<double>(under_load.size()));
     const auto first = std::ranges::lower_bound(record.time_s, record.time_s[record.rest_samples] + looked_ahead_s);
-    const auto ahead = errors_v(predict_voltage_ahead(identified.battery, record, predicted.voltage_v, looked_ahead_s),
-                                record, static_cast<std::size_t>(first - record.time_s.begin()));
+    const auto ahead = errors_v(predict_voltage_ahead(modelled, looked_ahead_s), record,
+                                static_cast<std::size_t>(first - record.time_s.begin()));
     check.ahead_error_v = ahead.size() > 0 ? ahead.cwiseAbs().mean() : 0.0;
+    if (const auto errors = others_w ? forecast_errors(modelled, *others_w) : std::nullopt) {
+        check.forecast_error_v = errors->before_v;
+        check.updated_forecast_error_v = errors->updated_v;
+    }
     check.extrapolated_percent = beyond_percent(identified, record, predicted);
     return check;
 }
@@ -286,9 +341,10 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     const auto& fullest = fullest_of(records);
     if (options.cells) require_possible_cells(fullest.flight, fullest.resting_voltage_v, *options.cells);
     auto common = identify_common(fit_circuit_jointly(records, cells_of(records, options)), options);
-    auto& [result, fitted, posterior] = common;
+    auto& [result, fitted, posterior, end] = common;
     add_health(fitted, options.with_capacities);
-    result.errors = fitted.errors;
+    result.errors.initial_charge_error_ah = fitted.errors.initial_charge_error_ah;
+    result.errors.resistance_ohm = fitted.errors.resistance_ohm;
     result.battery.intervals.resistance_ohm = fitted.errors.resistance_ohm;
     result.battery.intervals.resistance_scatter = resistance_scatter(fitted.resistances, result.fit.resistance_ohm);
     result.flights = identified_flights(fitted, posterior, result.curve_start_depletion_ah);
@@ -323,8 +379,14 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(folds.size(), [&](std::size_t fold) {
-        const auto common = identify_common(fit_without(all, folds[fold]), options);
-        for (const auto k : folds[fold]) checks[k] = checked(common, records[k]);
+        auto common = identify_common(fit_without(all, folds[fold]), options);
+        add_health(common.fitted, false);
+        auto& battery = common.identification.battery;
+        battery.intervals.resistance_scatter = resistance_scatter(common.fitted.resistances, battery.resistance_ohm);
+        std::vector<const DischargeRecord*> others;
+        for (const auto& aligned : common.fitted.aligned.records) others.push_back(aligned.record);
+        const auto others_w = mean_load_power_w(others);
+        for (const auto k : folds[fold]) checks[k] = checked(common, records[k], others_w);
         if (!progress) return;
         const std::lock_guard lock(mutex);
         progress(++done, folds.size());

@@ -114,7 +114,13 @@ struct LeaveOneOutCheck {
     double voltage_rms_v = 0.0;         ///< of all samples, predicted before take-off
     double load_rms_v = 0.0;            ///< of those under load
     double load_mean_error_v = 0.0;     ///< mean |error| of those under load
-    double ahead_error_v = 0.0;         ///< the same, predicted in flight 30 s before each sample
+    double load_half_width_v = 0.0;     ///< of the 95 % interval under load, mean
+    double load_held_percent = 0.0;     ///< of those under load: within that interval
+    double ahead_error_v = 0.0;         ///< mean |error|, predicted in flight 30 s before each sample
+    /// Mean |error| of all that remains of the flight, by the others' mean power: known before take-off, or every 30 s in
+    /// flight, with its power so far. None for a flight below a minute.
+    std::optional<double> forecast_error_v = {};
+    std::optional<double> updated_forecast_error_v = {};
     double initial_charge_ah = 0.0;     ///< missing from the full pack, by the others and its rest before take-off
     double extrapolated_percent = 0.0;  ///< of its samples: with more charge drawn than in any other flight
 };

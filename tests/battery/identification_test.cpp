@@ -277,6 +277,47 @@ TEST(Identification, FollowsThePackInFlight) {
     EXPECT_LT(check.ahead_error_v, 0.5 * check.load_mean_error_v);
 }
 
+TEST(Identification, StatesAnIntervalThatHoldsForAPackThatDoesNotBeginFull) {
+    auto pack = known_pack();
+    std::size_t held = 0;
+    for (std::uint64_t seed = 1; seed <= all_seeds; ++seed) {
+        std::vector<DischargeRecord> records;
+        for (std::uint64_t f = 0; f < 4; ++f) {
+            SyntheticDischarge flown;
+            flown.slow_resistance_ohm = 0.03;
+            if (f == 3) {  // its pack rested for a few minutes after another flight
+                flown.initial_charge_ah = 0.25 * pack.capacity_ah;
+                flown.initial_slow_v = 0.04;
+            }
+            pack.resistance_ohm = known_pack().resistance_ohm * (0.85 + 0.1 * static_cast<double>((f + seed) % 4));
+            records.push_back(test::discharge_record(synthetic_discharge(pack, flown, seed + 1000 * f)));
+        }
+        const auto check = leave_one_out(records, {}).back();
+        EXPECT_LT(check.load_half_width_v, 1.0) << "an interval that holds everything states nothing";
+        held += check.load_held_percent >= 90.0 ? 1 : 0;
+    }
+    EXPECT_GE(held, enough_seeds);
+}
+
+TEST(IdentificationStudy, RestsNoCapacityOnFlightsOfUnknownInitialCharge) {
+    FLIGHTWATT_NEEDS_SHARED();
+    std::vector<DischargeRecord> records;
+    for (int number = 1; number <= 209; number += 7) {  // of which the folder has two in three
+        const auto file = test::shared_dir() / "m100" / fmt::format("{}.csv", number);
+        if (!std::filesystem::exists(file)) continue;
+        try {
+            records.push_back(test::discharge_record(flight::read_flight(file)));
+        } catch (const InputError&) {  // no rest, no load
+        }
+    }
+    ASSERT_GE(records.size(), 10U);
+    const auto found = identify_battery(records, {});
+    const auto& interval = found.capacity.interval_ah.value();
+    fmt::print("{} flights: {:.2f} Ah, {:.2f} to {:.2f}\n", records.size(), found.capacity.value_ah, interval.low,
+               interval.high);
+    EXPECT_TRUE(interval.low < 5.7 && 5.7 < interval.high) << "what the pack is thought to hold";
+}
+
 TEST(Identification, ForetellsRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     std::vector<DischargeRecord> records;
@@ -289,6 +330,7 @@ TEST(Identification, ForetellsRealFlights) {
         fmt::print("{} left out: {:.1f} mV RMS, {:.1f} under load, {:.0f} % of it beyond the others\n", check.flight,
                    1e3 * check.voltage_rms_v, 1e3 * check.load_rms_v, check.extrapolated_percent);
         EXPECT_LT(check.voltage_rms_v, 0.090) << check.flight;
+        EXPECT_GE(check.load_held_percent, 90.0) << check.flight << ": its 95 % interval before take-off";
     }
     const auto found = identify_battery(records, {});
     fmt::print("resistance {:.4f} ohm [{:.4f}, {:.4f}]\n", found.fit.resistance_ohm, found.errors.resistance_ohm.low,
