@@ -188,6 +188,13 @@ class PackDivider {
     path::PathTrajectory at_once_;
 };
 
+/// Returns the row of a pack that rests on the ground, with the charge of `row` and without power.
+SocRow row_on_ground(const MissionVariant& mission, const SocRow& row, double time_s) {
+    SocRow rests{.time_s = time_s, .phase = row.phase, .soc_percent = row.soc_percent};
+    rests.terminal_voltage_v = battery::terminal_voltage_v(setup_of(mission).battery, {row.soc_percent, 0.0}, 0.0);
+    return rests;
+}
+
 /// Adds a flight that was simulated to the others.
 void add(PackFlight& flight, PackFlights& all) {
     const auto& [curve, summary] = flight.flown.simulation;
@@ -206,6 +213,11 @@ void add(PackFlight& flight, PackFlights& all) {
     if (summary.utility)
         total.utility = (total.utility.value_or(0.0) * in_air_s + *summary.utility * summary.duration_s) /
                         (in_air_s + summary.duration_s);
+    if (pause_s > 0.0) {
+        const auto& landed = all.flights[all.flights.size() - 2].mission;
+        all.curve.rows.push_back(row_on_ground(landed, all.curve.rows.back(), flight.start_s - pause_s));
+        all.curve.rows.push_back(row_on_ground(flight.mission, curve.rows.front(), flight.start_s));
+    }
     for (auto row : curve.rows) {
         row.time_s += flight.start_s;
         all.curve.rows.push_back(row);

@@ -31,7 +31,7 @@ struct PackFlights {
     bool suffice = false;               ///< the whole cruise is flown, and every flight keeps the reserve
     MissionSummary total;  ///< sums, with the time on the ground; the least charge; mean utility in the air
     double on_ground_s = 0.0;
-    SocCurve curve;  ///< of all flights, since the first take-off
+    SocCurve curve;  ///< of all flights, since the first take-off; on the ground between them without power
 };
 
 /// Divides a mission with [packs] into the fewest flights that land with the reserve, with the greatest charge that all

@@ -1,11 +1,13 @@
 #include "mission/packs.h"
 
+#include "base/units.h"
 #include "helpers/rejected.h"
 #include "mission/mission_file.h"
 #include "mission/plan.h"
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,6 +46,15 @@ void expect_equal(const PackFlights& all, const std::vector<std::string>& missio
         EXPECT_NEAR(summary.energy_wh, one.summary.energy_wh, 1e-8);
         EXPECT_NEAR(summary.compute_energy_wh, one.summary.compute_energy_wh, 1e-8);
         EXPECT_NEAR(*summary.final_soc_percent, *one.summary.final_soc_percent, 1e-6);
+        if (i > 0 && all.setup.packs->change_s > 0.0) {
+            for (const double time_s : {start_s - all.setup.packs->change_s, start_s}) {
+                const auto& rests = all.curve.rows.at(row++);
+                EXPECT_NEAR(rests.time_s, time_s, 1e-6);
+                EXPECT_EQ(rests.power_w + rests.mechanical_w + rests.compute_w + rests.current_a, 0.0);
+            }
+            EXPECT_EQ(all.curve.rows.at(row - 2).soc_percent, all.curve.rows.at(row - 3).soc_percent) << "the landed pack";
+            EXPECT_EQ(all.curve.rows.at(row - 1).soc_percent, one.curve.rows.front().soc_percent) << "the next one";
+        }
         ASSERT_LE(row + one.curve.rows.size(), all.curve.rows.size());
         for (const auto& expected : one.curve.rows) {
             const auto& actual = all.curve.rows[row++];
@@ -56,6 +67,12 @@ void expect_equal(const PackFlights& all, const std::vector<std::string>& missio
     }
     EXPECT_EQ(row, all.curve.rows.size());
     EXPECT_NEAR(all.total.energy_wh, energy_wh, 1e-8);
+    double area_j = 0.0;
+    for (std::size_t i = 1; i < all.curve.rows.size(); ++i) {
+        const auto& [from, to] = std::tie(all.curve.rows[i - 1], all.curve.rows[i]);
+        area_j += (to.time_s - from.time_s) * (from.power_w + to.power_w) / 2.0;
+    }
+    EXPECT_NEAR(units::wh_from_joule(area_j), energy_wh, 1e-3 * energy_wh) << "the rows, as straight lines";
     EXPECT_NEAR(all.total.duration_s, start_s - all.setup.packs->change_s, 1e-6);
 }
 
