@@ -25,22 +25,24 @@ Contributions contributions_of(const MechanicalModel& model, flight::Phase phase
     return found;
 }
 
-/// `value` with the interval that the flights' own values give their weighted mean; none from fewer than two.
-Estimate mean_of_flights(double value, const Contributions& flights,
+/// The weighted mean of the flights' own values with its interval; without interval from fewer than two. Returns
+/// `otherwise` where the model has no values of its flights.
+Estimate mean_of_flights(double otherwise, const Contributions& flights,
                          const std::function<std::optional<double>(const PhaseContribution&)>& own) {
     double mean = 0.0;
     double squares = 0.0;
     for (const auto& [name, flight] : flights) {
         const auto measured = own(flight);
-        if (!measured) return {value, std::nullopt};
+        if (!measured) return {otherwise, std::nullopt};
         mean += flight.weight * *measured;
         squares += flight.weight * flight.weight;
     }
-    if (flights.size() < 2 || squares >= 1.0) return {value, std::nullopt};
+    if (flights.empty()) return {otherwise, std::nullopt};
+    if (flights.size() < 2 || squares >= 1.0) return {mean, std::nullopt};
     double variance = 0.0;
     for (const auto& [name, flight] : flights)
         variance += flight.weight * std::pow(*own(flight) - mean, 2) / (1.0 - squares);
-    return {value, student_t_interval(value, std::sqrt(variance * squares), 1.0 / squares - 1.0)};
+    return {mean, student_t_interval(mean, std::sqrt(variance * squares), 1.0 / squares - 1.0)};
 }
 
 /// Two models' views of one phase.

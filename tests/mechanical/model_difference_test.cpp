@@ -46,6 +46,31 @@ TEST(ModelDifference, NamesTheLevelThatWasRaised) {
     }
 }
 
+TEST(ModelDifference, ComparesTheMeansOfTheFlightsAndNotThoseOfTheirCurves) {
+    auto a = test::published_model();
+    const auto means = [](double first_w, double second_w) {
+        std::vector<FlightContribution> flights(2);
+        flights[0].flight = "first";
+        flights[1].flight = "second";
+        flights[0].phases[flight::Phase::cruise] = PhaseContribution{.weight = 0.25, .mean_power_w = first_w};
+        flights[1].phases[flight::Phase::cruise] = PhaseContribution{.weight = 0.75, .mean_power_w = second_w};
+        for (auto& flight : flights) flight.phases[flight::Phase::cruise]->duration_s = 100.0;
+        return flights;
+    };
+    auto b = a;
+    a.flights = means(20.0, 24.0);
+    b.flights = means(30.0, 26.0);
+    std::size_t found = 0;
+    for (const auto& row : model_difference(a, b)) {
+        if (row.part != "cruise" || row.quantity != "mean_power_w") continue;
+        ++found;
+        EXPECT_DOUBLE_EQ(row.a->value, 23.0);
+        EXPECT_DOUBLE_EQ(row.b->value, 27.0);
+        EXPECT_TRUE(row.interval);
+    }
+    EXPECT_EQ(found, 1U);
+}
+
 TEST(ModelDifference, JudgesNoCoefficientThatOneModelLacks) {
     const auto a = test::published_model();
     auto b = a;
