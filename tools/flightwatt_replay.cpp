@@ -7,6 +7,7 @@
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "mission/mission_file.h"
 #include "mission/replay.h"
 #include "stages.h"
@@ -45,7 +46,10 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
     if (arguments.model) options.model = mechanical::read_mechanical_model(*arguments.model);
     const auto flights =
         cli::measured_flights(call, arguments.flights, mechanical::min_samples(options.fit.phases.order));
+    cli::ProgressBar replaying("replays");
+    options.progress = replaying.callback();
     auto replays = replay_flights(missions, flights, options);
+    replaying.hide();
     for (const auto& left : replays.not_replayed)
         cli::warn(call, fmt::format("{}: {} is not replayed on it: {}", left.flight, left.mission, left.reason));
     for (const auto& flight : *call.skipped)

@@ -1,6 +1,7 @@
 #include "mission/replay.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/planning/planner.h"
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -343,6 +346,7 @@ Replays replay_flights(std::span<const MissionVariant> missions, std::span<const
         }
     }
     Replays result;
+    std::vector<std::pair<const MissionVariant*, std::size_t>> flown;
     for (const auto& mission : missions) {
         const auto& setup = setup_of(mission);
         for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -350,9 +354,20 @@ Replays replay_flights(std::span<const MissionVariant> missions, std::span<const
             if (!reason.empty())
                 result.not_replayed.push_back({flights[i].samples.flight, setup.name, std::move(reason)});
             else
-                result.replays.push_back(replay_one(mission, flights[i], *models[i]));
+                flown.emplace_back(&mission, i);
         }
     }
+    result.replays.resize(flown.size());
+    std::mutex mutex;  // guards `done`
+    std::size_t done = 0;
+    if (options.progress) options.progress(done, flown.size());
+    for_each_in_parallel(flown.size(), [&](std::size_t k) {
+        const auto& [mission, i] = flown[k];
+        result.replays[k] = replay_one(*mission, flights[i], *models[i]);
+        if (!options.progress) return;
+        const std::lock_guard lock(mutex);
+        options.progress(++done, flown.size());
+    });
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "mission/mission.h"
 #include "mission/mission_summary.h"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,6 +69,8 @@ struct SkippedReplay {
 struct ReplayOptions {
     mechanical::ModelFitOptions fit;                        ///< of the model of the other flights
     std::optional<mechanical::MechanicalModel> model = {};  ///< instead of that
+    /// Receives the numbers of replays that are done and of all, from one thread at a time.
+    std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
 struct Replays {
