@@ -130,13 +130,13 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
             "--capacity {:g}: the missions' pack '{}' has {:g} Ah; give the capacity to `flightwatt battery` only",
             *options.capacity_ah, pack->name, pack->capacity_ah));
     auto of_pack = options;
-    const bool is_given = pack->capacity_ah != pack->flight_estimate->capacity_ah;
-    if (is_given) of_pack.capacity_ah = pack->capacity_ah;
+    of_pack.capacity_ah = pack->capacity_ah;
     of_pack.cells = pack->cells;
     try {
         auto battery = identify_with(flights, of_pack, max_flights);
-        if (is_given)
-            battery.notes.push_back(fmt::format("The capacity is that of the missions' pack '{}'.", pack->name));
+        if (battery.identified) battery.identified->battery.flight_estimate = pack->flight_estimate;
+        battery.notes.push_back(fmt::format(
+            "The capacity, and what the flights indicate, are those of the missions' pack '{}'.", pack->name));
         return battery;
     } catch (const UsageError& error) {  // flights newer than the pack drew more than its capacity
         auto battery = identify_with(flights, options, max_flights);

@@ -102,7 +102,7 @@ TEST(BatterySection, IsAboutThePackOfTheMissions) {
     ASSERT_TRUE(battery.identified);
     EXPECT_EQ(battery.identified->battery.capacity_ah, 10.0);
     const auto html = battery_section(battery).html;
-    EXPECT_THAT(html, HasSubstr("The capacity is that of the missions&#39; pack &#39;pack&#39;."));
+    EXPECT_THAT(html, HasSubstr("are those of the missions&#39; pack &#39;pack&#39;."));
     EXPECT_THAT(html, HasSubstr("the capacity of 10 Ah contradicts the flights"));
     EXPECT_THAT(html, testing::Not(HasSubstr("with --capacity")));
     battery::IdentificationOptions other;
@@ -110,6 +110,19 @@ TEST(BatterySection, IsAboutThePackOfTheMissions) {
     EXPECT_THROW(identify_for_report(flights, other, 12, missions), UsageError) << "a page has one pack";
     other.capacity_ah = 10.0;
     EXPECT_TRUE(identify_for_report(flights, other, 12, missions).identified);
+}
+
+TEST(BatterySection, StatesTheOneCapacityThatTheMissionsPackHasByItsFlights) {
+    const auto flights = flights_on(test::known_pack(), 4);
+    mission::Mission mission;
+    const auto by_all = identify_for_report(flights, {}, 12);
+    mission.setup.battery = by_all.identified.value().battery;
+    const auto by_two = identify_for_report(flights, {}, 2);
+    ASSERT_NE(by_two.identified.value().battery.capacity_ah, mission.setup.battery.capacity_ah);
+    const auto battery = identify_for_report(flights, {}, 2, std::vector<mission::MissionVariant>{mission});
+    const auto& identified = battery.identified.value().battery;
+    EXPECT_EQ(identified.capacity_ah, mission.setup.battery.capacity_ah);
+    EXPECT_EQ(identified.flight_estimate, mission.setup.battery.flight_estimate);
 }
 
 TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
