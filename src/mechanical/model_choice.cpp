@@ -47,7 +47,8 @@ bool is_curve_better(std::span<const ValidatedFlight> flights, const HeldOutScor
     return 2 * static_cast<std::size_t>(nearer) > flights.size();
 }
 
-/// Evenly from all, the first among them.
+}  // namespace
+
 std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights) {
     const auto count = std::min(flights.size(), max_validation_folds);
     std::vector<MeasuredFlight> chosen;
@@ -55,8 +56,6 @@ std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> fl
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(flights[i * flights.size() / count]);
     return chosen;
 }
-
-}  // namespace
 
 std::string remove_rejected(std::vector<ValidatedFlight>& flights) {
     const auto predicted = predicted_by(flights, physical);

@@ -78,6 +78,9 @@ inline constexpr double min_gain_of_curve = 0.05;
 /// that remove_rejected removes. std::nullopt where curve or mean power has none.
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
 
+/// Returns the flights by which a model is validated: of more than max_validation_folds that many, evenly from all.
+std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights);
+
 /// Adds the validation to a fitted model, and the physical model if it is not rejected. Of more than
 /// max_validation_folds flights that many are validated, evenly from all. Adds nothing for fewer than 2 flights or
 /// folds that cannot be fitted.

@@ -54,10 +54,8 @@ void add_model(Draft& page, const BatchContent& batch) {
         mechanical::TableIntervals::present);
     sections.push_back(model_section(model, "model"));
     sections.back().latex = model_latex(fitted);
-    if (batch.measured.size() < 2 || batch.measured.size() > max_validation_flights) {
-        notes.push_back(
-            fmt::format("The model is not validated: it needs 2 to {} flights and has {}; use flightwatt validate.",
-                        max_validation_flights, batch.measured.size()));
+    if (batch.measured.size() < 2) {
+        notes.emplace_back("The model is not validated: that needs 2 flights, of which each is predicted by the other.");
         return;
     }
     if (auto section = physical_section(batch.measured)) {
@@ -67,7 +65,11 @@ void add_model(Draft& page, const BatchContent& batch) {
         sections.push_back(std::move(*section));
     }
     auto& validated = page.answers.validated;
-    validated = leave_one_out(batch.measured, batch.fit->options, page.log.progress("fits"));
+    const auto chosen = mechanical::validated_flights(batch.measured);
+    validated = leave_one_out(chosen, batch.fit->options, page.log.progress("fits"));
+    if (chosen.size() < batch.measured.size())
+        notes.push_back(fmt::format("The model is validated on {} of {} flights, evenly chosen, as by flightwatt batch.",
+                                    chosen.size(), batch.measured.size()));
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");
     sections.push_back(validation_section(validated, any_synthetic(batch.flights)));
 }
@@ -141,6 +143,7 @@ std::vector<mission::Replay> replay_missions(const ReportInput& input, const Bat
                                              const ReportLog& log) {
     mission::ReplayOptions options;
     if (batch.fit) options.fit = batch.fit->options;
+    options.progress = log.progress("replays");
     auto result = replay_flights(input.missions, flights_with_power(batch), options);
     for (const auto& skipped : result.not_replayed)
         log.warn(fmt::format("{}: {} is not replayed on it: {}", skipped.flight, skipped.mission, skipped.reason));

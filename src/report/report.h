@@ -25,8 +25,7 @@ struct ReportLog {
     std::function<Progress(const std::string& unit)> progress = [](const std::string&) { return Progress(); };
 };
 
-/// Limits of the flights for validation and battery, whose work grows with their square.
-inline constexpr std::size_t max_validation_flights = 30;
+/// Limit of the flights for the battery, whose work grows with their square.
 inline constexpr std::size_t max_battery_flights = 12;
 
 struct ReportInput {
