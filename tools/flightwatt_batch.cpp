@@ -228,7 +228,8 @@ int finish(const cli::StageCall& call, const BatchArguments& arguments, batch::B
         if (fitted) fit = cli::FitOutput{&fitted->fit.model, fitted->physical ? &*fitted->physical : nullptr};
         cli::print_json(call, BatchOutput{fit ? &*fit : nullptr, nullptr, &flights});
     }
-    return exit_code(call, totals_of(flights));
+    const auto code = exit_code(call, totals_of(flights));
+    return fitted || arguments.no_fit ? code : cli::no_answer;
 }
 
 /// Makes a batch of the flights of one aircraft, from the folder of all, with its fit.

@@ -38,7 +38,8 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
                                                    std::optional<std::size_t> circuit) {
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
-    std::vector<std::pair<std::string, InputError>> refusals;  // by flight
+    std::vector<std::pair<std::string, Diagnostic>> refusals;  // by file
+    std::optional<InputError> refused;
     const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
         try {
             if (!loaded.exclusion.empty()) throw InputError({file}, loaded.exclusion);
@@ -49,15 +50,16 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
                 cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
             return std::move(found.records);
         } catch (const InputError& error) {
-            refusals.emplace_back(loaded.series.flight, error);
+            refusals.emplace_back(file, Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
+                                                   fmt::format("it is excluded: {}", error.what()),
+                                                   loaded.series.flight});
+            refused.emplace(error);
             return std::vector<battery::DischargeRecord>{};
         }
     };
     auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && refusals.size() == 1) throw InputError(refusals.front().second);
-    for (const auto& [flight, refusal] : refusals)
-        cli::add_diagnostic(call, {Severity::warning, "not used: " + kind_of_reason(refusal.what()),
-                                   fmt::format("it is excluded: {}", refusal.what()), flight});
+    if (records.empty() && refusals.size() == 1) throw InputError(*refused);
+    for (const auto& [file, refusal] : refusals) cli::leave_out(call, flights, file, refusal);
     if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
     return records;
 }

@@ -20,7 +20,6 @@ using namespace flightwatt;
 /// Those that are in the air at the moment, with what they had flown by then.
 std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, const flight::LoadedFlight& loaded,
                                                    mechanical::MeasuredFlights measured, double until_s) {
-    for (const auto& exclusion : measured.exclusions) cli::add_diagnostic(call, cli::diagnostic_of(exclusion));
     std::vector<mechanical::MeasuredFlight> flights;
     for (std::size_t i = 0; i < measured.flights.size(); ++i) {
         auto& flight = measured.flights[i];
@@ -44,8 +43,10 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const cli::FlightArguments& arguments,
                                                      std::size_t needed_samples, const std::optional<double>& at_s) {
     if (!at_s) return cli::measured_flights(call, arguments, needed_samples);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto&, const auto& loaded) {
-        return in_the_air(call, loaded, mechanical::extract_flights(loaded, needed_samples), *at_s);
+    return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
+        auto measured = mechanical::extract_flights(loaded, needed_samples);
+        cli::add_exclusions(call, arguments, file, measured.exclusions);
+        return in_the_air(call, loaded, std::move(measured), *at_s);
     });
 }
 

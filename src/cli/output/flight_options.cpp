@@ -30,6 +30,11 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
     }
 }
 
+bool is_in_batch(const std::string& file) {
+    const auto folder = std::filesystem::path(file).parent_path();
+    return file.ends_with(batch::series_suffix) && std::filesystem::exists(folder.parent_path() / batch::manifest_name);
+}
+
 /// A flight that was read.
 struct ReadFlight {
     batch::FlightAircraft flown;
@@ -169,11 +174,25 @@ Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion) {
             fmt::format("{} is excluded from the fit: {}", phase ? to_string(*phase) : "it", reason), flight};
 }
 
-bool is_shown_by_batch(const StageCall& call, const std::string& file) {
-    const auto folder = std::filesystem::path(file).parent_path();
-    return !call.notes && file.ends_with(batch::series_suffix) &&
-           std::filesystem::exists(folder.parent_path() / batch::manifest_name);
+void leave_out(const StageCall& call, const FlightArguments& arguments, const std::string& file,
+               Diagnostic diagnostic) {
+    if (!is_in_batch(file) && !arguments.load.excluded.contains(diagnostic.flight)) {
+        diagnostic.severity = Severity::error;
+        call.skipped->push_back({file, diagnostic.text});
+    }
+    add_diagnostic(call, std::move(diagnostic));
 }
+
+void add_exclusions(const StageCall& call, const FlightArguments& arguments, const std::string& file,
+                    const std::vector<mechanical::Exclusion>& exclusions) {
+    for (const auto& exclusion : exclusions) {
+        auto diagnostic = diagnostic_of(exclusion);
+        exclusion.phase ? add_diagnostic(call, std::move(diagnostic))
+                        : leave_out(call, arguments, file, std::move(diagnostic));
+    }
+}
+
+bool is_shown_by_batch(const StageCall& call, const std::string& file) { return !call.notes && is_in_batch(file); }
 
 void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded) {
     for (const auto& [number, reason] : loaded.unused)
@@ -259,7 +278,7 @@ std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const St
         auto measured = mechanical::extract_flights(loaded, needed_samples);
         const bool is_shown = needed_samples <= needed_by_batch && is_shown_by_batch(call, file);
         if (!is_shown && loaded.lacks_power.empty())  // which has a diagnostic of its own
-            for (const auto& exclusion : measured.exclusions) add_diagnostic(call, diagnostic_of(exclusion));
+            add_exclusions(call, arguments, file, measured.exclusions);
         return std::move(measured.flights);
     });
 }

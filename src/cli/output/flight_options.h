@@ -62,7 +62,7 @@ flight::Candidates read_recording(const StageCall& call, const std::string& file
 /// The end of the description of every stage that makes one result of several flights.
 inline constexpr auto several_flights_text =
     " FOLDER holds logs, or is\none of flightwatt batch: the flights that it accepted. A flight that cannot be used is named and skipped, and\n"
-    "the exit code is then 3.";
+    "the exit code is then 3 (not for flights of a batch, which has named them).";
 
 /// Flights that count, by the number of the call that read them.
 struct UsedFlights {
@@ -109,6 +109,14 @@ std::vector<T> from_flights(const StageCall& call, const FlightArguments& argume
 
 /// What an exclusion is to the user: a flight that is not used, or one of its phases.
 Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion);
+
+/// Collects that a flight, read from `file`, is not used at all: an error with the exit code of skip_input, but a warning
+/// where --exclude names it, and for a flight in the folder of a batch.
+void leave_out(const StageCall& call, const FlightArguments& arguments, const std::string& file, Diagnostic diagnostic);
+
+/// Collects the parts of a file's flights that are not used.
+void add_exclusions(const StageCall& call, const FlightArguments& arguments, const std::string& file,
+                    const std::vector<mechanical::Exclusion>& exclusions);
 
 /// Whether this is a flight in the folder of a batch, whose diagnostics the batch has shown.
 bool is_shown_by_batch(const StageCall& call, const std::string& file);
