@@ -270,7 +270,8 @@ std::optional<ModelScore> score_of(std::span<const ValidatedFlight> flights, con
     score.mean_absolute_error_wh /= count;
     score.bias_wh /= count;
     if (phase != flight::Phase::landing && std::isfinite(percent)) score.mean_absolute_error_percent = percent / count;
-    if (with_interval > 0) score.coverage_95 = static_cast<double>(covered) / static_cast<double>(with_interval);
+    // The flights with an interval alone would be a choice of them: those that lack a phase, for instance.
+    if (with_interval == score.flights) score.coverage_95 = static_cast<double>(covered) / count;
     return score;
 }
 

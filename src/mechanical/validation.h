@@ -50,7 +50,7 @@ struct ModelScore {
     std::optional<double> mean_absolute_error_percent;       ///< of the measured energy; none for landing
     std::optional<double> mean_absolute_error_rest_percent;  ///< of the energy not flown yet; only of the whole
     double bias_wh = 0.0;                                    ///< mean of predicted - measured
-    std::optional<double> coverage_95;  ///< fraction of the flights within the interval; none without intervals
+    std::optional<double> coverage_95;  ///< fraction of the flights within the interval; none if one has no interval
 };
 
 /// The phase's score, or the whole flight's without a phase: the sum over the phases that were predicted.

@@ -215,6 +215,13 @@ TEST(ScoreOf, IsOfTheModelsThatPredictedAllThatAnotherDid) {
     EXPECT_THAT(model_names(flights), testing::ElementsAre("fourier", "physical"));
 }
 
+TEST(ScoreOf, HasNoCoverageWhereAFlightHasNoInterval) {
+    std::vector<ValidatedFlight> flights{cruise(4.0, 4.2, 0.3), cruise(4.0, 4.2, 0.3)};
+    EXPECT_EQ(score_of(flights, "fourier", std::nullopt)->coverage_95, 1.0);
+    flights[1].predictions[0].phases[Phase::cruise]->uncertainty_known = false;
+    EXPECT_FALSE(score_of(flights, "fourier", std::nullopt)->coverage_95) << "one of two flights is no coverage";
+}
+
 TEST(PredictedEnergy, OfTheWholeIsTheSumOfWhatWasMeasured) {
     auto flight = cruise(4.0, 4.2, 0.3);
     flight.measured_wh[Phase::takeoff] = 0.25;
