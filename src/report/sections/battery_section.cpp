@@ -135,8 +135,7 @@ ReportBattery identify_for_report(std::span<const ReportFlight> flights, const b
     try {
         auto battery = identify_with(flights, of_pack, max_flights);
         if (battery.identified) battery.identified->battery.flight_estimate = pack->flight_estimate;
-        battery.notes.push_back(fmt::format(
-            "The capacity, and what the flights indicate, are those of the missions' pack '{}'.", pack->name));
+        battery.notes.push_back(fmt::format("The capacity is that of the missions' pack '{}'.", pack->name));
         return battery;
     } catch (const UsageError& error) {  // flights newer than the pack drew more than its capacity
         auto battery = identify_with(flights, options, max_flights);

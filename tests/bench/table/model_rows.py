@@ -70,7 +70,7 @@ def sampling_rows(bench):
                 off[name] = run["worst_difference_percent"]
     rows = []
     for battery, title in (("thevenin", "Thévenin pack"), ("paper", "paper's pack")):
-        rows.append(Row("drawn flights a core", title, most[f"drawn_flights/{battery}"], "/s", at_least(1e4, "/s")))
+        rows.append(Row("drawn flights a core", title, most[f"drawn_flights/{battery}"], "/s", at_least(1e5, "/s")))
         worst = off[f"off_runge_kutta/{battery}"]
         rows.append(Row("drawn flights, off by", title, worst, "%", at_most(0.01, "%")))
     return rows

@@ -102,7 +102,7 @@ TEST(BatterySection, IsAboutThePackOfTheMissions) {
     ASSERT_TRUE(battery.identified);
     EXPECT_EQ(battery.identified->battery.capacity_ah, 10.0);
     const auto html = battery_section(battery).html;
-    EXPECT_THAT(html, HasSubstr("are those of the missions&#39; pack &#39;pack&#39;."));
+    EXPECT_THAT(html, HasSubstr("The capacity is that of the missions&#39; pack &#39;pack&#39;."));
     EXPECT_THAT(html, HasSubstr("the capacity of 10 Ah contradicts the flights"));
     EXPECT_THAT(html, testing::Not(HasSubstr("with --capacity")));
     battery::IdentificationOptions other;
