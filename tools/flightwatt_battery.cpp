@@ -50,9 +50,9 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
                 cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
             return std::move(found.records);
         } catch (const InputError& error) {
-            refusals.emplace_back(file, Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
-                                                   fmt::format("it is excluded: {}", error.what()),
-                                                   loaded.series.flight});
+            refusals.emplace_back(file,
+                                  Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
+                                             fmt::format("it is excluded: {}", error.what()), loaded.series.flight});
             refused.emplace(error);
             return std::vector<battery::DischargeRecord>{};
         }

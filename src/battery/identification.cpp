@@ -88,7 +88,9 @@ CurveEnd determined_end(const FittedFlights& fitted) {
 void widen_by_end(Capacity& capacity, const CurveEnd& end) {
     if (!capacity.interval_ah) return;
     const double by = normal_half_width() * end.error_ah / end.charge_ah;
-    const auto factor = [&](double bound_ah) { return std::exp(std::hypot(std::log(bound_ah / capacity.value_ah), by)); };
+    const auto factor = [&](double bound_ah) {
+        return std::exp(std::hypot(std::log(bound_ah / capacity.value_ah), by));
+    };
     capacity.interval_ah = Interval{capacity.value_ah / factor(capacity.interval_ah->low),
                                     capacity.value_ah * factor(capacity.interval_ah->high)};
 }
@@ -287,8 +289,8 @@ double beyond_percent(const BatteryIdentification& identified, const DischargeRe
 double resting_charge_sd_ah(const DischargeRecord& record, const JointCircuitFit& aligned, double initial_charge_ah) {
     const auto& fit = aligned.fit;
     const double below_v = fit.weights.fullest_rest_v - record.resting_voltage_v;
-    const double rest_sd_v = std::hypot(fit.weights.cells * charged_rest_sd_v, lower_rest_fraction * below_v,
-                                        record.resolution_v);
+    const double rest_sd_v =
+        std::hypot(fit.weights.cells * charged_rest_sd_v, lower_rest_fraction * below_v, record.resolution_v);
     // The slope of the curve from there on, over a tenth of the charge that it covers.
     const double over_ah = 0.1 * fit.knots_ah.back();
     const double from_ah = std::clamp(initial_charge_ah, 0.0, fit.knots_ah.back() - over_ah);

@@ -111,12 +111,12 @@ struct IdentifiedFlight {
 /// Prediction of a flight's voltage by the others. Under load is from the first load on.
 struct LeaveOneOutCheck {
     std::string flight;
-    double voltage_rms_v = 0.0;         ///< of all samples, predicted before take-off
-    double load_rms_v = 0.0;            ///< of those under load
-    double load_mean_error_v = 0.0;     ///< mean |error| of those under load
-    double load_half_width_v = 0.0;     ///< of the 95 % interval under load, mean
-    double load_held_percent = 0.0;     ///< of those under load: within that interval
-    double ahead_error_v = 0.0;         ///< mean |error|, predicted in flight 30 s before each sample
+    double voltage_rms_v = 0.0;      ///< of all samples, predicted before take-off
+    double load_rms_v = 0.0;         ///< of those under load
+    double load_mean_error_v = 0.0;  ///< mean |error| of those under load
+    double load_half_width_v = 0.0;  ///< of the 95 % interval under load, mean
+    double load_held_percent = 0.0;  ///< of those under load: within that interval
+    double ahead_error_v = 0.0;      ///< mean |error|, predicted in flight 30 s before each sample
     /// Mean |error| of all that remains of the flight, by the others' mean power: known before take-off, or every 30 s in
     /// flight, with its power so far. None for a flight below a minute.
     std::optional<double> forecast_error_v = {};

@@ -55,7 +55,8 @@ void add_model(Draft& page, const BatchContent& batch) {
     sections.push_back(model_section(model, "model"));
     sections.back().latex = model_latex(fitted);
     if (batch.measured.size() < 2) {
-        notes.emplace_back("The model is not validated: that needs 2 flights, of which each is predicted by the other.");
+        notes.emplace_back(
+            "The model is not validated: that needs 2 flights, of which each is predicted by the other.");
         return;
     }
     if (auto section = physical_section(batch.measured)) {
@@ -68,8 +69,9 @@ void add_model(Draft& page, const BatchContent& batch) {
     const auto chosen = mechanical::validated_flights(batch.measured);
     validated = leave_one_out(chosen, batch.fit->options, page.log.progress("fits"));
     if (chosen.size() < batch.measured.size())
-        notes.push_back(fmt::format("The model is validated on {} of {} flights, evenly chosen, as by flightwatt batch.",
-                                    chosen.size(), batch.measured.size()));
+        notes.push_back(
+            fmt::format("The model is validated on {} of {} flights, evenly chosen, as by flightwatt batch.",
+                        chosen.size(), batch.measured.size()));
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");
     sections.push_back(validation_section(validated, any_synthetic(batch.flights)));
 }

@@ -76,7 +76,8 @@ void expect_one_answer(const std::filesystem::path& folder) {
         for (const auto& other : {compared, reported}) {
             if (!other.contains(key)) continue;
             if (value.is_number())  // integrated from row to row, and rows differ
-                EXPECT_NEAR(other.at(key).get<double>(), value.get<double>(), 1e-6 * (1.0 + value.get<double>())) << key;
+                EXPECT_NEAR(other.at(key).get<double>(), value.get<double>(), 1e-6 * (1.0 + value.get<double>()))
+                    << key;
             else
                 EXPECT_EQ(other.at(key), value) << key;
         }

@@ -52,7 +52,8 @@ void expect_equal(const PackFlights& all, const std::vector<std::string>& missio
                 EXPECT_NEAR(rests.time_s, time_s, 1e-6);
                 EXPECT_EQ(rests.power_w + rests.mechanical_w + rests.compute_w + rests.current_a, 0.0);
             }
-            EXPECT_EQ(all.curve.rows.at(row - 2).soc_percent, all.curve.rows.at(row - 3).soc_percent) << "the landed pack";
+            EXPECT_EQ(all.curve.rows.at(row - 2).soc_percent, all.curve.rows.at(row - 3).soc_percent)
+                << "the landed pack";
             EXPECT_EQ(all.curve.rows.at(row - 1).soc_percent, one.curve.rows.front().soc_percent) << "the next one";
         }
         ASSERT_LE(row + one.curve.rows.size(), all.curve.rows.size());

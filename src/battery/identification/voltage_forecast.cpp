@@ -69,7 +69,8 @@ class FlownCorrection {
 };
 
 /// Mean |error| [V] of a forecast from the sample `from` on, at a constant power.
-double forecast_error_v(const ModelledRecord& modelled, const FlownCorrection& flown, std::size_t from, double power_w) {
+double forecast_error_v(const ModelledRecord& modelled, const FlownCorrection& flown, std::size_t from,
+                        double power_w) {
     const auto& battery = *modelled.battery;
     const auto& record = *modelled.record;
     const auto correction = flown.parameters();

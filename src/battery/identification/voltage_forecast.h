@@ -13,9 +13,9 @@ namespace flightwatt::battery {
 struct ModelledRecord {
     const Battery* battery = nullptr;
     const DischargeRecord* record = nullptr;
-    std::vector<double> soc_percent;     ///< at each sample
-    std::vector<double> voltage_v;       ///< at each sample, without what the flight itself has shown
-    double initial_charge_sd_ah = 0.0;   ///< of the charge missing when it began
+    std::vector<double> soc_percent;    ///< at each sample
+    std::vector<double> voltage_v;      ///< at each sample, without what the flight itself has shown
+    double initial_charge_sd_ah = 0.0;  ///< of the charge missing when it began
 };
 
 /// Returns the index behind the last sample under load: above 15 % of the highest current, where a flight begins.
