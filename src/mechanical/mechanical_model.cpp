@@ -51,17 +51,9 @@ MechanicalModel with_default_power(MechanicalModel model) {
 
 double power_w(const FourierModel& model, double time_s) {
     double power = model.a0_w;
-    // Each harmonic's angle is the one before it, turned by that of the first.
-    const double angle = model.omega_rad_per_s * time_s;
-    const double first_cos = std::cos(angle);
-    const double first_sin = std::sin(angle);
-    double cos = 1.0;
-    double sin = 0.0;
     for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
-        const double turned_cos = cos * first_cos - sin * first_sin;
-        sin = sin * first_cos + cos * first_sin;
-        cos = turned_cos;
-        power += model.cos_w[n] * cos + model.sin_w[n] * sin;
+        const double angle = static_cast<double>(n + 1) * model.omega_rad_per_s * time_s;
+        power += model.cos_w[n] * std::cos(angle) + model.sin_w[n] * std::sin(angle);
     }
     return power;
 }
