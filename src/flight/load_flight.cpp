@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "flight/flight_identity.h"
+#include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
 #include "flight/select.h"
 
@@ -201,6 +202,7 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
     LoadedFlight loaded;
     FlightAssessment& assessment = loaded;
     auto data = select_tracks(series);
+    const auto gaps = options.bridges_link_gaps ? bridge_link_gaps(data) : std::vector<LinkGap>();
     const bool has_altitude = data.altitude_m.time_s.size() >= min_altitudes;
     if (options.power_required || !has_altitude || data.clock_restart) require_power(data);
     if (options.flight_required || has_altitude) loaded.phases = segment(data, options.segmentation);
@@ -211,9 +213,12 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
     if (options.correct_idle_offset && loaded.lacks_power.empty()) {
         correct_idle_offset(series, data, loaded.power.idle);
         data = select_tracks(series);
+        if (options.bridges_link_gaps) bridge_link_gaps(data);
         loaded.diagnostics = all_diagnostics(data, loaded.phases, assessment);
     }
+    append(loaded.diagnostics, Severity::warning, "link lost", data.flight, gap_warnings(gaps, loaded.phases.sorties));
     loaded.exclusion = exclusion_of(data, assessment, options);
+    if (loaded.exclusion.empty()) loaded.exclusion = unknown_energy_reason(gaps, loaded.phases.sorties);
     loaded.series = std::move(series);
     loaded.data = std::move(data);
     return loaded;

@@ -25,6 +25,7 @@ struct LoadOptions {
     std::optional<std::size_t> sortie = {};  ///< from 1: the other sorties are ignored
     SegmentationOptions segmentation = {};
     bool correct_idle_offset = false;     ///< see correct_idle_offset()
+    bool bridges_link_gaps = false;       ///< see bridge_link_gaps()
     std::set<std::string> excluded = {};  ///< flights that are not used
     std::set<std::string> keep = {};      ///< flights that are used despite power faults
     bool simulated = false;               ///< flights of a simulator (SITL, HITL) are used too
