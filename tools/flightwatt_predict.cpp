@@ -33,6 +33,7 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
     const auto sortie = options.sortie.value_or(1) - 1;
     options.sortie.reset();
     options.flight_required = false;
+    options.bridges_link_gaps = true;
     const auto& file = call.inputs.front();
     auto candidates = cli::read_recording(call, file, options);
     const double until_s = cli::resolve_log_time(time, candidates, sortie, options.segmentation);
@@ -47,7 +48,9 @@ KnownFlight read_progress(const cli::StageCall& call, const cli::RequestedTime& 
     if (!loaded.exclusion.empty()) {
         cli::warn(call, fmt::format("{}: no prediction can be trusted: {}", file, loaded.exclusion));
     }
-    auto flown = mechanical::progress_at(loaded.series, until_s, sortie, options.segmentation);
+    const auto& sorties = loaded.phases.sorties;
+    const auto* flying = sortie < sorties.size() ? &sorties[sortie] : nullptr;
+    auto flown = mechanical::progress_of(loaded.data, flying, until_s, options.segmentation);
     return {std::move(flown), std::move(loaded.data)};
 }
 

@@ -194,7 +194,7 @@ with its source, or by a signal, and then prints its last prediction. The source
                       "flightwatt watch --follow flight.data --model model.toml --remaining 600 --json"};
     WatchArguments arguments;
     arguments.live.silence_threshold_s = 30.0;
-    arguments.basis.need = cli::PathNeed::optional;
+    arguments.basis.uses_missions_battery = true;
     auto& options = stage.options;
     cli::add_source_options(options, arguments.source);
     options.add("aircraft", arguments.live.aircraft_id, {.value = "ID"},

@@ -15,6 +15,8 @@ namespace flightwatt::live {
 namespace {
 
 using battery::ConstantLoad;
+using flight::Phase;
+using mechanical::DurationEstimate;
 using mechanical::FlightProgress;
 using path::PathFix;
 
@@ -42,10 +44,12 @@ void warn_of_level(const mechanical::PhysicalModel& model, double level, Remarks
 
 /// The position on the path, at most its end: by the aircraft's positions, by the time since the cruise began, or by
 /// --remaining.
-double seconds_on_path(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix) {
+double seconds_on_path(const PredictionInput& input, const FlightProgress& flown, const std::optional<PathFix>& fix,
+                       double takeoff_s) {
     const auto& path = input.path->flown();
     if (input.remaining_s) {
-        if (*input.remaining_s <= path.duration_s) return path.duration_s - *input.remaining_s;
+        const double left_s = std::max(0.0, *input.remaining_s - takeoff_s);
+        if (left_s <= path.duration_s) return path.duration_s - left_s;
         throw UsageError(fmt::format("--remaining {:g}: the mission's path takes only {:.1f} s", *input.remaining_s,
                                      path.duration_s));
     }
@@ -89,7 +93,7 @@ void remark_on(const PathFix& fix, double cruise_s, Remarks& remarks) {
 mechanical::RemainingCruise predict_along_path(const PredictionInput& input, const FlightProgress& flown,
                                                const std::optional<PathFix>& fix, Prediction& prediction,
                                                Remarks& remarks) {
-    prediction.on_path_s = seconds_on_path(input, flown, fix);
+    prediction.on_path_s = seconds_on_path(input, flown, fix, prediction.takeoff_s);
     prediction.is_from_position = fix && fix->path_time_s;
     const double path_s = input.path->flown().duration_s;
     if (!input.remaining_s && *prediction.on_path_s >= path_s)
@@ -112,16 +116,18 @@ mechanical::RemainingCruise predict_phases(const PredictionInput& input, const F
                                            Prediction& prediction) {
     flight::PerPhase<std::optional<mechanical::WeightedPhase>> model;
     auto of_flight = flown.phases;
+    if (flown.cruise_s() > 0.0) of_flight[Phase::cruise] = {flown.cruise_s(), flown.cruise_energy_wh};
     for (const auto phase : flight::all_phases) {
         model[phase] = forecast_of(input.model, phase);
-        if (phase != flight::Phase::cruise && !model[phase]->model.level_spread) of_flight[phase] = {};
+        if (phase != Phase::cruise && !model[phase]->model.level_spread) of_flight[phase] = {};
     }
-    of_flight[flight::Phase::cruise] = {flown.cruise_s(), flown.cruise_energy_wh};
-    const auto rest = predict_remaining_flight(model, correlate_phases(input.model), of_flight,
-                                               {{0.0, prediction.remaining_s, input.landing_s}}, input.prior);
-    prediction.landing = rest.phases[flight::Phase::landing].energy;
+    const auto rest =
+        predict_remaining_flight(model, correlate_phases(input.model), of_flight,
+                                 {{prediction.takeoff_s, prediction.remaining_s, prediction.landing_s}}, input.prior);
+    prediction.takeoff = rest.phases[Phase::takeoff].energy;
+    prediction.landing = rest.phases[Phase::landing].energy;
     prediction.remaining_energy = rest.total;
-    return rest.phases[flight::Phase::cruise];
+    return rest.phases[Phase::cruise];
 }
 
 mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const FlightProgress& flown,
@@ -132,14 +138,76 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
         remarks.warnings.push_back(
             fmt::format("the deviation of this flight from the model is unknown: {}", flown.motion.no_bins_reason));
     if (input.path) return predict_along_path(input, flown, fix, prediction, remarks);
-    const double overtime_s = input.remaining_s ? -*input.remaining_s : flown.cruise_s() - input.cruise_s.value();
-    if (overtime_s > 0.0) return predict_overtime(flown, overtime_s, prediction, remarks);
-    prediction.remaining_s = -overtime_s;
+    const double left_s =
+        input.remaining_s ? *input.remaining_s - prediction.takeoff_s : input.cruise_s.value() - flown.cruise_s();
+    if (left_s < 0.0 && !input.remaining_s) return predict_overtime(flown, -left_s, prediction, remarks);
+    prediction.remaining_s = std::max(0.0, left_s);
     if (!input.motion) return predict_phases(input, flown, prediction);
     auto model = input.model.physical.value();
     if (flown.motion.payload_known) model.load.payload_kg = flown.motion.load.payload_kg;
     warn_of_extrapolation(model, *input.motion, remarks);
     return predict_remaining_physical(model, flown, {term_values(*input.motion, model.load), prediction.remaining_s});
+}
+
+bool is_taking_off(const FlightProgress& flown) { return !(flown.cruise_s() > 0.0); }
+
+/// Estimates the duration of a phase ahead: as it is stated, else by the flights of the model, and by the take-off of
+/// this flight where that was received.
+DurationEstimate duration_ahead(const PredictionInput& input, Phase phase, double planned_s,
+                                const FlightProgress& flown) {
+    if (const auto& stated_s = input.duration_sd_s[phase]) return {planned_s, *stated_s};
+    const double takeoff_s = flown.phases[Phase::takeoff].duration_s;
+    return takeoff_s > 0.0 && !is_taking_off(flown)
+               ? estimate_duration_after_takeoff(input.model, phase, planned_s, takeoff_s)
+               : estimate_duration(input.model, phase, planned_s);
+}
+
+/// Estimates the rest of a take-off in progress, at least 0 s. Throws NoResultError where the model has no variability of
+/// take-offs.
+DurationEstimate takeoff_ahead(const PredictionInput& input, const FlightProgress& flown, Remarks& remarks) {
+    remarks.notes.emplace_back(
+        "the aircraft has not held its height yet: when its take-off ends is by the model's flights, and the power of "
+        "its cruise is known by its take-off only");
+    auto rest = duration_ahead(input, Phase::takeoff, input.takeoff_s, flown);
+    rest.mean_s = std::max(0.0, rest.mean_s - flown.phases[Phase::takeoff].duration_s);
+    if (rest.mean_s > 0.0 && !input.model.phases[Phase::takeoff].level_spread)
+        throw NoResultError("the aircraft takes off, and the model has no variability of take-offs between flights");
+    return rest;
+}
+
+/// The energies of the remaining take-off and of the landing beside a cruise that was predicted by itself.
+void add_other_phases(const PredictionInput& input, Prediction& prediction) {
+    if (prediction.takeoff_s > 0.0)
+        prediction.takeoff = mechanical::predict_remaining_before_flight(
+            forecast_of(input.model, Phase::takeoff), prediction.flown.phases[Phase::takeoff].duration_s,
+            prediction.takeoff_s);
+    if (prediction.landing_s > 0.0)
+        prediction.landing =
+            mechanical::predict_before_flight(forecast_of(input.model, Phase::landing), prediction.landing_s);
+    prediction.remaining_energy = sum_of(sum_of(prediction.takeoff, prediction.cruise.energy), prediction.landing);
+}
+
+double mean_power_w(const mechanical::PhaseModel& phase) {
+    return phase.duration_s > 0.0 ? energy_j(phase.fourier, phase.duration_s) / phase.duration_s : 0.0;
+}
+
+/// Adds to the variances how long the phases ahead may take. Where the time until the landing is stated, a longer
+/// take-off shortens the cruise.
+void add_durations(const PredictionInput& input, const DurationEstimate& takeoff, const DurationEstimate& landing,
+                   Prediction& prediction) {
+    const auto add = [&](const DurationEstimate& duration, double power_w, mechanical::EnergyEstimate& of_phase) {
+        const double sd_wh = units::wh_from_joule(power_w * duration.sd_s);
+        for (auto* energy : {&of_phase, &prediction.remaining_energy})
+            add_variance(*energy, sd_wh * sd_wh, duration.degrees_of_freedom);
+    };
+    const double cruise_w = prediction.cruise.remaining_mean_w;
+    add(takeoff, mean_power_w(input.model.phases[Phase::takeoff]) - (input.remaining_s ? cruise_w : 0.0),
+        prediction.takeoff);
+    if (landing.mean_s > 0.0)
+        add(landing, units::joule_from_wh(prediction.landing.energy_wh) / landing.mean_s, prediction.landing);
+    if (!input.path && !input.remaining_s && !prediction.overtime_s)
+        add(duration_ahead(input, Phase::cruise, input.cruise_s.value(), prediction.flown), cruise_w,
+            prediction.cruise.energy);
 }
 
 /// From the whole record of the flight so far.
@@ -163,19 +231,23 @@ void require_predicting(const PredictionInput& input, const std::string& file) {
     if (input.path || input.motion)
         require_physical(input.model, file, "--mission");
     else
-        require_interval(input.model, flight::Phase::cruise, file);
-    if (input.landing_s > 0.0) require_interval(input.model, flight::Phase::landing, file);
+        require_interval(input.model, Phase::cruise, file);
+    if (input.landing_s > 0.0) require_interval(input.model, Phase::landing, file);
 }
 
 PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     require_single_flight(setup);
-    PredictionInput input{setup.mechanical.value(), mechanical::CruisePrior::curve,
-                          setup.duration_s[flight::Phase::landing]};
+    PredictionInput input{setup.mechanical.value(), mechanical::CruisePrior::curve, setup.duration_s[Phase::takeoff],
+                          setup.duration_s[Phase::landing]};
     input.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
+    for (const auto phase : flight::all_phases) {
+        input.duration_sd_s[phase] = setup.uncertainty.duration_sd_s[phase];
+        if (!input.duration_sd_s[phase] && setup.duration_is_stated[phase]) input.duration_sd_s[phase] = 0.0;
+    }
     if (setup.cruise_path)
         input.path = std::make_shared<const path::PathForecast>(*setup.cruise_path->plan);
     else
-        input.cruise_s = setup.duration_s[flight::Phase::cruise];
+        input.cruise_s = setup.duration_s[Phase::cruise];
     if (!setup.cruise_path && setup.airspeed_m_per_s)
         input.motion = mechanical::FlightState{.airspeed_m_per_s = *setup.airspeed_m_per_s};
     return input;
@@ -225,7 +297,7 @@ bool advance(const PredictionInput& input, double time_s, std::vector<ConstantLo
 
 }  // namespace
 
-void require_interval(const mechanical::MechanicalModel& model, flight::Phase phase, const std::string& file) {
+void require_interval(const mechanical::MechanicalModel& model, Phase phase, const std::string& file) {
     if (model.phases[phase].level_spread) return;
     throw InputError({file}, fmt::format("[{}] has no spread between flights", to_string(phase)),
                      "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
@@ -255,7 +327,8 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
 Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightData& data,
                           Remarks& remarks) {
     std::optional<PathFix> fix;
-    if (input.path && !input.remaining_s) fix = locate_on_path(*input.path, data, flown.cruise_start_s, flown.until_s);
+    if (input.path && !input.remaining_s && !is_taking_off(flown))
+        fix = locate_on_path(*input.path, data, flown.cruise_start_s, flown.until_s);
     auto prediction = predict_energy(input, flown, fix, remarks);
     if (input.battery) prediction.battery = predict_battery(input, data, prediction, remarks);
     return prediction;
@@ -265,15 +338,15 @@ Prediction predict_energy(const PredictionInput& input, const FlightProgress& fl
                           Remarks& remarks) {
     Prediction prediction;
     prediction.flown = flown;
+    const auto takeoff = is_taking_off(flown) ? takeoff_ahead(input, flown, remarks) : mechanical::DurationEstimate();
+    const auto landing = duration_ahead(input, Phase::landing, input.landing_s, flown);
+    prediction.takeoff_s = takeoff.mean_s;
+    prediction.landing_s = landing.mean_s;
+    prediction.landing_sd_s = landing.sd_s;
     prediction.cruise = predict_cruise(input, flown, fix, prediction, remarks);
     if (prediction.uses_physical_model) warn_of_level(input.model.physical.value(), prediction.cruise.gain, remarks);
-    prediction.landing_s = input.landing_s;
-    if (prediction.uses_physical_model || prediction.overtime_s) {
-        if (input.landing_s > 0.0)
-            prediction.landing =
-                mechanical::predict_before_flight(forecast_of(input.model, flight::Phase::landing), input.landing_s);
-        prediction.remaining_energy = sum_of(prediction.cruise.energy, prediction.landing);
-    }
+    if (prediction.uses_physical_model || prediction.overtime_s) add_other_phases(input, prediction);
+    add_durations(input, takeoff, landing, prediction);
     prediction.interval = interval_95(prediction.remaining_energy).value();
     return prediction;
 }
@@ -292,6 +365,9 @@ std::vector<ConstantLoad> remaining_power(const Prediction& prediction, double f
     } else {
         ahead = {{prediction.cruise.remaining_mean_w * factor, prediction.remaining_s}};
     }
+    const double takeoff_j = units::joule_from_wh(prediction.takeoff.energy_wh);
+    if (prediction.takeoff_s > 0.0)
+        ahead.insert(ahead.begin(), {takeoff_j / prediction.takeoff_s * factor, prediction.takeoff_s});
     const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
     if (prediction.landing_s > 0.0) ahead.push_back({landing_j / prediction.landing_s * factor, prediction.landing_s});
     return ahead;
@@ -384,16 +460,17 @@ PredictionInput input_from_mission(const mission::MissionSetup& setup, const std
     return input;
 }
 
-PredictionInput path_input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
+PredictionInput energy_input_from_mission(const mission::MissionSetup& setup, const std::string& file) {
     auto input = unchecked_input(setup);
     require_predicting(input, file);
     return input;
 }
 
 PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s) {
-    for (const auto phase : {flight::Phase::cruise, flight::Phase::landing}) require_interval(model, phase, file);
-    const double landing_s = model.phases[flight::Phase::landing].duration_s;
-    return {std::move(model), mechanical::CruisePrior::curve, landing_s, remaining_s};
+    for (const auto phase : {Phase::cruise, Phase::landing}) require_interval(model, phase, file);
+    const double takeoff_s = model.phases[Phase::takeoff].duration_s;
+    const double landing_s = model.phases[Phase::landing].duration_s;
+    return {std::move(model), mechanical::CruisePrior::curve, takeoff_s, landing_s, {}, remaining_s};
 }
 
 }  // namespace flightwatt::live

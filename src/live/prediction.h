@@ -13,18 +13,20 @@
 #include <string>
 #include <vector>
 
-/// Prediction of the energy from a moment in cruise to the end of the flight, for predict and watch.
+/// Prediction of the energy from a moment in take-off or cruise to the end of the flight, for predict and watch.
 namespace flightwatt::live {
 
 /// The inputs of a prediction, except for the flight itself.
 struct PredictionInput {
     mechanical::MechanicalModel model;
     mechanical::CruisePrior prior = mechanical::CruisePrior::curve;
+    double takeoff_s = 0.0;
     double landing_s = 0.0;
-    std::optional<double> remaining_s = {};               ///< of the cruise, from now on
-    std::optional<double> cruise_s = {};                  ///< else: of the whole cruise; none: of the path
-    std::optional<mechanical::FlightState> motion = {};   ///< of the remaining cruise; or
-    std::shared_ptr<const path::PathForecast> path = {};  ///< its path
+    flight::PerPhase<std::optional<double>> duration_sd_s = {};  ///< as stated; none: as the model's flights differ
+    std::optional<double> remaining_s = {};                      ///< until the landing begins, from now on
+    std::optional<double> cruise_s = {};                         ///< else: of the whole cruise; none: of the path
+    std::optional<mechanical::FlightState> motion = {};          ///< of the remaining cruise; or
+    std::shared_ptr<const path::PathForecast> path = {};         ///< its path
     std::optional<battery::Battery> battery = {};
     std::string battery_file = {};                   ///< for errors
     std::optional<double> initial_soc_percent = {};  ///< none: by the resting voltage
@@ -44,16 +46,19 @@ struct BatteryPrediction {
 
 struct Prediction {
     mechanical::FlightProgress flown;
-    bool began_in_air = false;             ///< the lift-off was not received: `flown` counts from the first message
-    std::optional<double> on_path_s = {};  ///< position on the path, as its planned time
-    bool is_from_position = false;         ///< of `on_path_s`: by the aircraft's positions, not by the time
-    double remaining_s = 0.0;
+    bool began_in_air = false;              ///< the lift-off was not received: `flown` counts from the first message
+    std::optional<double> on_path_s = {};   ///< position on the path, as its planned time
+    bool is_from_position = false;          ///< of `on_path_s`: by the aircraft's positions, not by the time
+    double takeoff_s = 0.0;                 ///< of the take-off, as expected; 0: in cruise
+    mechanical::EnergyEstimate takeoff;     ///< of that time
+    double remaining_s = 0.0;               ///< of the cruise
     std::optional<double> overtime_s = {};  ///< of the cruise beyond the mission's: then the landing begins now
     bool uses_physical_model = false;       ///< for the cruise; else the curve
     mechanical::RemainingCruise cruise;
     std::vector<battery::ConstantLoad> remaining_power = {};  ///< planned, along the path; empty: constant
     mechanical::EnergyEstimate landing;
     double landing_s = 0.0;
+    double landing_sd_s = 0.0;  ///< of `landing_s`; 0: it is stated
     mechanical::EnergyEstimate remaining_energy;
     mechanical::EnergyInterval interval;
     std::optional<BatteryPrediction> battery = {};
@@ -88,7 +93,7 @@ Prediction predict_flight(const PredictionInput& input, const mechanical::Flight
 Prediction predict_energy(const PredictionInput& input, const mechanical::FlightProgress& flown,
                           const std::optional<path::PathFix>& fix, Remarks& remarks);
 
-/// Expected loads of the remaining cruise and the landing, times `factor`.
+/// Expected loads of the remaining take-off, the remaining cruise and the landing, times `factor`.
 std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction, double factor = 1.0);
 
 double energy_j(const std::vector<battery::ConstantLoad>& loads);
@@ -128,7 +133,7 @@ TimeCurve soc_ahead(const PredictionInput& input, const Prediction& prediction, 
 PredictionInput input_from_mission(const mission::MissionSetup& setup, const std::string& file);
 
 /// As input_from_mission, without the battery. Throws InputError where the model allows no prediction.
-PredictionInput path_input_from_mission(const mission::MissionSetup& setup, const std::string& file);
+PredictionInput energy_input_from_mission(const mission::MissionSetup& setup, const std::string& file);
 
 /// `remaining_s` more of the cruise from any moment on, then the model's landing. Throws as require_interval.
 PredictionInput input_from_model(mechanical::MechanicalModel model, const std::string& file, double remaining_s);

@@ -53,13 +53,6 @@ double log_time_after_lift_off(const flight::FlightSeries& series, double since_
                                     last_time_s(series), since_s));
 }
 
-FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie_index,
-                           const flight::SegmentationOptions& options) {
-    const auto known = select_tracks(truncate_series(series, until_s));
-    const auto sortie = sortie_of(known, sortie_index, options);
-    return progress_of(known, sortie ? &*sortie : nullptr, until_s, options);
-}
-
 FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options) {
     if (std::isfinite(known.last_s) && until_s > known.last_s + max_log_gap_s) {
@@ -77,10 +70,8 @@ FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie
     const auto& last = sortie->phases.back();
     if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
     const double cruise_start_s = first.end.time_s;
-    // A climbing aircraft has always just reached 90 % of its height so far: that is not a cruise yet.
-    if (last.phase == flight::Phase::takeoff || until_s - cruise_start_s < options.hold_s) {
-        refuse(fmt::format("has not held its height for {:.0f} s: expected a moment in cruise", options.hold_s));
-    }
+    if (last.phase == flight::Phase::takeoff || until_s - cruise_start_s < options.hold_s)
+        return measured_progress(known, {{flight::Phase::takeoff, first.start.time_s, until_s}}, until_s);
     return measured_progress(known,
                              {{flight::Phase::takeoff, first.start.time_s, cruise_start_s},
                               {flight::Phase::cruise, cruise_start_s, until_s}},

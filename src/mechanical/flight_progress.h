@@ -17,7 +17,7 @@ struct FlownPhase {
 /// A flight in the air at one moment; all times are the log's own seconds.
 struct FlightProgress {
     double lift_off_s = 0.0;
-    double cruise_start_s = 0.0;
+    double cruise_start_s = 0.0;  ///< `until_s` in a take-off: the height was not held for hold_s yet
     double until_s = 0.0;
     double energy_wh = 0.0;  ///< measured from lift-off until now
     double cruise_energy_wh = 0.0;
@@ -31,13 +31,10 @@ struct FlightProgress {
 double log_time_after_lift_off(const flight::FlightSeries& series, double since_s, std::size_t sortie = 0,
                                const flight::SegmentationOptions& options = {});
 
-/// The state at a time of the log, from the log up to that time alone. `sortie` counts from 0. Throws NoResultError
-/// where by then the aircraft has not taken off, has not held its height for hold_s, or has landed, or where nothing
-/// was logged for more than 60 s before; and as segment.
-FlightProgress progress_at(const flight::FlightSeries& series, double until_s, std::size_t sortie = 0,
-                           const flight::SegmentationOptions& options = {});
-
-/// The same from a log that ends at that time, and its segmentation. nullptr: no sortie.
+/// Returns the state at the end of a log, from its segmentation (nullptr: no sortie). Until the height was held for
+/// hold_s, all of the flight is its take-off: a climbing aircraft has always just reached 90 % of its height so far.
+/// Throws NoResultError where by then the aircraft has not taken off or has landed, where its take-off is not in the
+/// log, or where nothing was logged for more than 60 s before.
 FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options = {});
 

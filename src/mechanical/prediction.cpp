@@ -11,6 +11,14 @@
 namespace flightwatt::mechanical {
 namespace {
 
+/// Of the flights that count.
+std::vector<double> durations_s(const MechanicalModel& model, flight::Phase phase) {
+    std::vector<double> flown_s;
+    for (const auto& flight : model.flights)
+        if (const auto& part = flight.phases[phase]; part && part->weight > 0.0) flown_s.push_back(part->duration_s);
+    return flown_s;
+}
+
 /// Half width of the 95 % interval of a phase's mean power, where it is known.
 std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::size_t flights) {
     const auto& model = phase.model;
@@ -73,6 +81,35 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
     return power;
 }
 
+DurationEstimate estimate_duration(const MechanicalModel& model, flight::Phase phase, double planned_s) {
+    const auto flown_s = durations_s(model, phase);
+    if (flown_s.size() < 2) return {planned_s};
+    const double relative_sd = sample_sd(flown_s) / mean(flown_s);
+    return {planned_s, planned_s * relative_sd * std::sqrt(1.0 + forecast_of(model, phase).weight_square_sum),
+            static_cast<double>(flown_s.size() - 1)};
+}
+
+DurationEstimate estimate_duration_after_takeoff(const MechanicalModel& model, flight::Phase phase, double planned_s,
+                                                 double takeoff_s) {
+    auto estimate = estimate_duration(model, phase, planned_s);
+    const auto takeoffs_s = durations_s(model, flight::Phase::takeoff);
+    if (takeoffs_s.size() < 2) return estimate;
+    std::vector<flight::PerPhase<std::optional<double>>> flown_s(model.flights.size());
+    for (std::size_t i = 0; i < flown_s.size(); ++i)
+        for (const auto of : {flight::Phase::takeoff, phase})
+            if (const auto& part = model.flights[i].phases[of]; part && part->weight > 0.0)
+                flown_s[i][of] = part->duration_s;
+    const double correlation = correlate_phases(flown_s)[flight::Phase::takeoff][phase];
+    const double sd_s = sample_sd(takeoffs_s);
+    if (correlation == 0.0 || !(sd_s > 0.0)) return estimate;
+    const double deviation = (takeoff_s - mean(takeoffs_s)) / sd_s;
+    const double of_flights_s = estimate.sd_s / std::sqrt(1.0 + forecast_of(model, phase).weight_square_sum);
+    estimate.mean_s = std::max(0.0, planned_s + correlation * deviation * of_flights_s);
+    estimate.sd_s *= std::sqrt((1.0 - correlation * correlation) *
+                               (1.0 + deviation * deviation / static_cast<double>(takeoffs_s.size())));
+    return estimate;
+}
+
 EnergyEstimate predict_before_flight(const WeightedPhase& phase, double duration_s) {
     return predict_remaining_before_flight(phase, 0.0, duration_s);
 }
@@ -112,7 +149,7 @@ std::vector<RemainingCruise> predict_remaining_physical(const PhysicalModel& mod
         auto& rest = rests[i];
         rest.gain = power.level;
         rest.expected_w = expected_w;
-        rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+        if (flown.cruise_s() > 0.0) rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
         rest.remaining_mean_w = power.mean_w;
         rest.energy.energy_wh = power.mean_w * wh_per_w;
         add_variance(rest.energy, std::pow(power.parameter_sd_w * wh_per_w, 2), model.degrees_of_freedom);

@@ -6,6 +6,7 @@
 #include "mechanical/physical_model.h"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -95,6 +96,23 @@ PhaseCorrelations correlate_phases(const MechanicalModel& model);
 /// The sum over phases whose errors have these correlations.
 EnergyEstimate sum_of(const flight::PerPhase<std::optional<EnergyEstimate>>& phases,
                       const PhaseCorrelations& correlations);
+
+/// The duration of a phase of a flight to come.
+struct DurationEstimate {
+    double mean_s = 0.0;
+    double sd_s = 0.0;                                                    ///< 0: it is known
+    double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of its Student t; infinite: normal
+};
+
+/// Estimates how far the duration of a phase differs from `planned_s`: as those of the model's flights do, in
+/// proportion. Without two flights that have the phase, the sd is 0.
+DurationEstimate estimate_duration(const MechanicalModel& model, flight::Phase phase, double planned_s);
+
+/// Estimates the same for a phase ahead of a flight whose take-off took `takeoff_s`, by the regression on the take-offs
+/// of the model's flights: who climbs for longer descends for longer (docs/methods.md, Eq. 20b). The correlation is
+/// shrunk as correlate_phases does it.
+DurationEstimate estimate_duration_after_takeoff(const MechanicalModel& model, flight::Phase phase, double planned_s,
+                                                 double takeoff_s);
 
 /// The rest of a flight, phase by phase; a phase without time left is empty.
 struct RemainingFlight {

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "flight/load_flight.h"
 #include "flight/select.h"
+#include "helpers/flight_progress.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
 
@@ -20,6 +21,7 @@ namespace flightwatt::test {
 inline live::PredictionInput wing_basis(double remaining_s = 300.0) {
     live::PredictionInput basis;
     basis.model = mechanical::read_mechanical_model(source_dir() / "fits/mechanical/synthetic-wing.toml");
+    basis.takeoff_s = basis.model.phases[flight::Phase::takeoff].duration_s;
     basis.landing_s = basis.model.phases[flight::Phase::landing].duration_s;
     basis.remaining_s = remaining_s;
     basis.battery = battery::read_battery(source_dir() / "fits/battery/synthetic-3s.toml");
@@ -56,7 +58,7 @@ inline live::Prediction predicted(const std::filesystem::path& log, double until
                                   const live::PredictionInput& basis) {
     const auto series = truncate_series(flight::read_flight(log), until_s);
     live::Remarks remarks;
-    return predict_flight(basis, mechanical::progress_at(series, until_s), select_tracks(series), remarks);
+    return predict_flight(basis, progress_at(series, until_s), select_tracks(series), remarks);
 }
 
 inline void expect_same(const live::Prediction& watched, const live::Prediction& expected) {

@@ -1,5 +1,6 @@
 #include "live/live_flight.h"
 
+#include "helpers/flight_progress.h"
 #include "helpers/path_missions.h"
 #include "helpers/sample_logs.h"
 #include "helpers/selected_tracks.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -77,7 +79,7 @@ std::shared_ptr<const path::PathForecast> path_of(const std::filesystem::path& l
 
 /// When the cruise of the log begins [s].
 double cruise_start_s(const std::filesystem::path& log) {
-    return mechanical::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
+    return test::progress_at(flight::read_flight(log), 300.0).cruise_start_s;
 }
 
 /// The wing along the log's own path, for this long from the beginning of its cruise.
@@ -120,6 +122,54 @@ TEST(LiveFlight, SaysWhatPredictSaysOfRealFlights) {
     }
 }
 
+/// Nothing is received for 20 minutes of a flight, of which the log has 150 s.
+std::vector<IncomingMessage> messages_with_lost_link(const std::filesystem::path& log, double until_s) {
+    auto messages = test::messages_of(log, 200.0);
+    for (auto& message : test::messages_of(log, until_s, 350.0)) {
+        *message.time_s += 1200.0 - 150.0;
+        messages.push_back(std::move(message));
+    }
+    return messages;
+}
+
+TEST(LiveFlight, GoesOnAfterALostLink) {
+    const auto log = test::sample(1);
+    const auto state_after = [&](const std::vector<IncomingMessage>& messages) {
+        LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
+        test::receive_all(flight, messages);
+        return flight.update();
+    };
+    const auto whole = state_after(test::messages_of(log, 450.0));
+    const auto state = state_after(messages_with_lost_link(log, 450.0));
+    EXPECT_EQ(state.restarts, 0U);
+    EXPECT_EQ(state.phase, Phase::cruise);
+    EXPECT_NEAR(state.lift_off_s.value(), whole.lift_off_s.value(), 0.01);
+    EXPECT_NEAR(state.flight_time_s, whole.flight_time_s + 1050.0, 0.01);
+    EXPECT_NEAR(state.energy_wh.value(), whole.energy_wh.value(), 0.05) << "by the counter";
+    EXPECT_NEAR(state.battery->soc_percent.value(), whole.battery->soc_percent.value(), 0.2);
+    EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("gap of 1201 s from 199.4 s on")));
+    EXPECT_TRUE(state.prediction) << state.no_prediction_reason;
+}
+
+TEST(LiveFlight, DoesNotKnowTheEnergyOfALostLinkWithoutACounter) {
+    const auto log = test::sample(1);
+    LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
+    for (auto message : messages_with_lost_link(log, 450.0)) {
+        std::istringstream words(message.text);
+        std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
+        if (fields.at(1) == "ENERGY") {  // throttle, voltage, current, power, charge, energy
+            fields.at(6) = fields.at(7) = "0";
+            message.text = fmt::format("{}", fmt::join(fields, " "));
+        }
+        flight.receive(message, 0.0);
+    }
+    const auto state = flight.update();
+    EXPECT_EQ(state.phase, Phase::cruise);
+    EXPECT_FALSE(state.energy_wh);
+    EXPECT_FALSE(state.prediction);
+    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("no counter shows its energy"));
+}
+
 TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     const auto log = test::sample(1);
     LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
@@ -136,11 +186,14 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("has not taken off"));
     state = state_at(50.001, 85.0);
     EXPECT_EQ(state.phase, Phase::takeoff);
-    EXPECT_THAT(state.no_prediction_reason, testing::HasSubstr("has not held its height"));
+    ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
+    test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, test::wing_basis()));
+    const double early_wh = state.prediction->interval.high_wh - state.prediction->interval.low_wh;
     state = state_at(85.001, 300.0);
     EXPECT_EQ(state.phase, Phase::cruise);
     EXPECT_NEAR(state.flight_time_s, 235.5, 2.0);
     EXPECT_TRUE(state.no_prediction_reason.empty());
+    EXPECT_LT(state.prediction->interval.high_wh - state.prediction->interval.low_wh, early_wh);
     state = state_at(300.001, 1000.0);
     EXPECT_TRUE(state.landed);
     EXPECT_FALSE(state.phase);

@@ -5,6 +5,7 @@
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
 
+#include <cmath>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -83,10 +84,11 @@ TEST(PredictionBasis, HoldsWhatAMissionSays) {
     ASSERT_NE(basis.path, nullptr);
     EXPECT_FALSE(basis.cruise_s);
     EXPECT_EQ(basis.landing_s, setup.duration_s[flight::Phase::landing]);
+    EXPECT_EQ(basis.takeoff_s, setup.duration_s[flight::Phase::takeoff]);
     EXPECT_EQ(basis.limits.reserve_soc_percent, setup.reserve_soc_percent);
     ASSERT_TRUE(basis.battery);
     EXPECT_EQ(basis.battery->capacity_ah, setup.battery.capacity_ah);
-    EXPECT_FALSE(path_input_from_mission(setup, "survey-path.toml").battery);
+    EXPECT_FALSE(energy_input_from_mission(setup, "survey-path.toml").battery);
 }
 
 /// As in drawn flights: what the mission states is known, unless it says how far it is not.
@@ -108,7 +110,7 @@ TEST(PredictionBasis, SaysWhyAPublishedModelPredictsNothing) {
     const auto basis = input_from_mission(setup, "phased.toml");
     EXPECT_THAT(basis.no_prediction_reason, HasSubstr("has no spread"));
     EXPECT_EQ(basis.cruise_s, setup.duration_s[flight::Phase::cruise]);
-    EXPECT_THROW(path_input_from_mission(setup, "phased.toml"), InputError);
+    EXPECT_THROW(energy_input_from_mission(setup, "phased.toml"), InputError);
 }
 
 TEST(PredictionBasis, TakesTheModelsLanding) {
@@ -119,6 +121,90 @@ TEST(PredictionBasis, TakesTheModelsLanding) {
     EXPECT_EQ(basis.landing_s, model.phases[flight::Phase::landing].duration_s);
     model.phases[flight::Phase::landing].level_spread.reset();
     EXPECT_THROW(input_from_model(model, file, 300.0), InputError);
+}
+
+/// Flights whose landings take 3 s more for each second of their take-offs, give or take half a second.
+mechanical::MechanicalModel model_of_high_and_low_flights() {
+    auto model = mechanical::read_mechanical_model(test::source_dir() / "fits/mechanical/synthetic-wing.toml");
+    model.flights.clear();
+    for (const int i : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+        mechanical::FlightContribution flight;
+        const double odd_s = i % 2 == 0 ? 0.5 : -0.5;
+        flight.phases[flight::Phase::takeoff] = {0.1, 20.0 + i, 0.0, 0, 50.0};
+        flight.phases[flight::Phase::cruise] = {0.1, 500.0, 0.0, 0, 25.0};
+        flight.phases[flight::Phase::landing] = {0.1, 40.0 + 3.0 * i + odd_s, 0.0, 0, 10.0};
+        model.flights.push_back(flight);
+    }
+    model.phases[flight::Phase::takeoff].duration_s = 24.5;
+    model.phases[flight::Phase::landing].duration_s = 53.5;
+    return model;
+}
+
+mechanical::FlightProgress after(double takeoff_s, double cruise_s) {
+    mechanical::FlightProgress flown{0.0, takeoff_s, takeoff_s + cruise_s};
+    flown.phases[flight::Phase::takeoff] = {takeoff_s, takeoff_s * 50.0 / 3600.0};
+    flown.cruise_energy_wh = cruise_s * 25.0 / 3600.0;
+    if (cruise_s > 0.0) flown.phases[flight::Phase::cruise] = {cruise_s, flown.cruise_energy_wh};
+    return flown;
+}
+
+TEST(Durations, OfALandingFollowThoseOfTheTakeoff) {
+    const auto input = input_from_model(model_of_high_and_low_flights(), "model.toml", 300.0);
+    Remarks remarks;
+    const auto low = predict_energy(input, after(20.0, 100.0), {}, remarks);
+    const auto high = predict_energy(input, after(29.0, 100.0), {}, remarks);
+    EXPECT_NEAR(high.landing_s - low.landing_s, 27.0 * 9.0 / 12.0, 1.0) << "shrunk: ten flights, and three without";
+    EXPECT_LT(low.landing_sd_s, 8.0);
+    EXPECT_GT(low.landing_sd_s, 3.0);
+    EXPECT_TRUE(remarks.notes.empty());
+}
+
+TEST(Durations, OfALandingAreUnknownUnlessTheyAreStated) {
+    auto input = input_from_model(model_of_high_and_low_flights(), "model.toml", 300.0);
+    Remarks remarks;
+    const auto unknown = predict_energy(input, after(25.0, 100.0), {}, remarks);
+    EXPECT_GT(unknown.landing_sd_s, 0.0);
+    input.duration_sd_s[flight::Phase::landing] = 0.0;
+    input.landing_s = unknown.landing_s;
+    const auto stated = predict_energy(input, after(25.0, 100.0), {}, remarks);
+    EXPECT_EQ(stated.landing_sd_s, 0.0);
+    EXPECT_NEAR(unknown.remaining_energy.variance_wh2 - stated.remaining_energy.variance_wh2,
+                std::pow(unknown.landing_sd_s * stated.landing.energy_wh / stated.landing_s, 2), 1e-9);
+    input.duration_sd_s[flight::Phase::landing] = 300.0;
+    const auto wide = predict_energy(input, after(25.0, 100.0), {}, remarks);
+    const double landing_w = wide.landing.energy_wh * 3600.0 / wide.landing_s;
+    EXPECT_NEAR(std::sqrt(wide.remaining_energy.variance_wh2), 300.0 * landing_w / 3600.0, 0.05);
+}
+
+TEST(Durations, OfACruiseAreUnknownWhereTheMissionStatesNone) {
+    auto input = input_from_model(model_of_high_and_low_flights(), "model.toml", 300.0);
+    Remarks remarks;
+    const auto stated = predict_energy(input, after(25.0, 200.0), {}, remarks);
+    input.remaining_s.reset();
+    input.cruise_s = 500.0;
+    input.duration_sd_s[flight::Phase::cruise] = 60.0;
+    const auto unknown = predict_energy(input, after(25.0, 200.0), {}, remarks);
+    EXPECT_NEAR(unknown.remaining_energy.energy_wh, stated.remaining_energy.energy_wh, 1e-9);
+    EXPECT_NEAR(unknown.remaining_energy.variance_wh2 - stated.remaining_energy.variance_wh2,
+                std::pow(60.0 * stated.cruise.remaining_mean_w / 3600.0, 2), 1e-9);
+}
+
+TEST(Durations, BeginWithTheRestOfATakeoff) {
+    const auto input = input_from_model(model_of_high_and_low_flights(), "model.toml", 300.0);
+    Remarks remarks;
+    const auto climbing = predict_energy(input, after(10.0, 0.0), {}, remarks);
+    EXPECT_NEAR(climbing.takeoff_s, 14.5, 1e-9);
+    EXPECT_NEAR(climbing.remaining_s, 285.5, 1e-9) << "300 s until the landing begins";
+    EXPECT_GT(climbing.takeoff.energy_wh, 0.0);
+    EXPECT_NEAR(energy_j(remaining_power(climbing)), climbing.remaining_energy.energy_wh * 3600.0, 1e-6);
+    EXPECT_FALSE(remarks.notes.empty());
+    EXPECT_EQ(climbing.landing_s, 53.5) << "how high it climbs is not known";
+    const auto over = predict_energy(input, after(40.0, 0.0), {}, remarks);
+    EXPECT_EQ(over.takeoff_s, 0.0);
+    EXPECT_EQ(over.remaining_s, 300.0);
+    const auto cruising = predict_energy(input, after(25.0, 100.0), {}, remarks);
+    EXPECT_GT(climbing.interval.high_wh - climbing.interval.low_wh,
+              cruising.interval.high_wh - cruising.interval.low_wh);
 }
 
 using path::FlightPath;

@@ -5,12 +5,15 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/segment.h"
+#include "helpers/flight_progress.h"
 #include "helpers/test_paths.h"
 
 #include <gtest/gtest.h>
 
 namespace flightwatt::mechanical {
 namespace {
+
+using test::progress_at;
 
 flight::FlightSeries sample_flight() {
     return flight::read_flight(test::source_dir() / "logs" / "opterra_synthetic_01.data");
@@ -66,10 +69,20 @@ TEST(FlightProgress, HasNoHindsightOnRealFlights) {
     }
 }
 
-TEST(FlightProgress, RefusesMomentsOutsideOfTheCruise) {
+TEST(FlightProgress, IsATakeoffUntilTheHeightIsHeld) {
+    const auto series = sample_flight();
+    const auto climbing = progress_at(series, 74.0);
+    EXPECT_EQ(climbing.cruise_s(), 0.0);
+    EXPECT_NEAR(climbing.phases[flight::Phase::takeoff].duration_s, 74.0 - climbing.lift_off_s, 1e-9);
+    EXPECT_GT(climbing.phases[flight::Phase::takeoff].energy_wh, 0.0);
+    const double cruise_start_s = progress_at(series, 300.0).cruise_start_s;
+    EXPECT_EQ(progress_at(series, cruise_start_s + 25.0).cruise_s(), 0.0) << "29 s are not 30";
+    EXPECT_NEAR(progress_at(series, cruise_start_s + 35.0).cruise_s(), 35.0, 2.0);
+}
+
+TEST(FlightProgress, RefusesMomentsOutsideOfTheFlight) {
     const auto series = sample_flight();
     EXPECT_THROW(progress_at(series, 40.0), NoResultError);         // on the ground
-    EXPECT_THROW(progress_at(series, 74.0), NoResultError);         // climbing
     EXPECT_THROW(progress_at(series, 740.0), NoResultError);        // landed
     EXPECT_THROW(progress_since(series, 5000.0), NoResultError);    // the log ends before
     EXPECT_THROW(progress_since(series, 300.0, 1), NoResultError);  // no second sortie

@@ -7,6 +7,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
+#include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
@@ -27,15 +28,11 @@ PredictionInput read_mission_basis(const StageCall& call, const BasisArguments& 
     const auto& file = *arguments.mission;
     auto mission = mission::read_mission(file, {.allow_unplanned = true});
     const auto& setup = setup_of(mission);
-    const bool needs_path = arguments.need == PathNeed::required;
-    if (!setup.cruise_path && needs_path) {
-        throw InputError({file}, "the mission has no [path]",
-                         "state where it flies (docs/missions.md, path), or give --model and --remaining");
-    }
     if (!setup.mechanical)
         throw InputError({file}, "the mission has no mechanical model", "name one: mechanical = FILE");
     warn_of_setup(call, setup);
-    auto basis = needs_path ? live::path_input_from_mission(setup, file) : live::input_from_mission(setup, file);
+    auto basis = arguments.uses_missions_battery ? live::input_from_mission(setup, file)
+                                                 : live::energy_input_from_mission(setup, file);
     basis.remaining_s = arguments.remaining_s;
     if (kept != nullptr) *kept = std::move(mission);
     return basis;
@@ -55,6 +52,17 @@ PredictionInput read_model_basis(const StageCall& call, const BasisArguments& ar
     return basis;
 }
 
+/// Throws InputError where the beginning of a text has complete lines, and none of them is a message of Paparazzi.
+void require_messages(const std::filesystem::path& path, const std::string& bytes) {
+    const auto is_message = [](const std::string& line) { return live::message_of_line(line).has_value(); };
+    std::vector<std::string> lines;
+    for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != std::string::npos; begin = end + 1)
+        lines.push_back(bytes.substr(begin, end - begin));
+    if (lines.empty() || std::ranges::any_of(lines, is_message)) return;
+    throw InputError({path.string()}, "has no line of a Paparazzi log",
+                     "watch follows Paparazzi's; flightwatt predict takes other logs, with --at");
+}
+
 /// Whether the file that is to be followed is binary: by its content, and while it has none by its name.
 bool is_binary_log(const std::filesystem::path& path) {
     std::error_code error;
@@ -63,7 +71,9 @@ bool is_binary_log(const std::filesystem::path& path) {
     if (telemetry::detect_autopilot_format(bytes))
         throw InputError({path.string()}, "is a log of another autopilot, which is not followed",
                          "watch follows Paparazzi's; flightwatt predict takes this one, with --at");
-    if (!bytes.empty()) return telemetry::detect_binary_framing(bytes).has_value();
+    if (telemetry::detect_binary_framing(bytes)) return true;
+    require_messages(path, bytes);
+    if (!bytes.empty()) return false;
     const auto ending = path.extension().string();
     return ending == ".LOG" || ending == ".tlm" || ending == ".TLM" || ending == ".bin";
 }
@@ -84,7 +94,7 @@ std::unique_ptr<live::MessageSource> follow(const SourceArguments& arguments, co
 void add_basis_options(Options& options, BasisArguments& arguments) {
     constexpr double max_remaining_s = 1e6;  // no battery flies for eleven days
     constexpr double max_m_per_s = 200.0;
-    const bool needs_path = arguments.need == PathNeed::required;
+    const bool with_battery = arguments.uses_missions_battery;
     options.add("model", arguments.model, {.value = "MODEL.toml", .file = FileRole::input, .excludes = {"mission"}},
                 "from flightwatt fit, of two flights or more");
     options.add(
@@ -98,11 +108,9 @@ void add_basis_options(Options& options, BasisArguments& arguments) {
                 {.value = "M_PER_S", .min = -max_m_per_s, .max = max_m_per_s, .unit = "m/s", .needs = {"airspeed"}},
                 "and its climb (0; below 0 it descends)");
     options.add("mission", arguments.mission, input_file("MISSION.toml"),
-                needs_path
-                    ? "a mission with a [path], instead of --model: the remaining path is flown, with its model, "
-                      "its wind and its landing"
-                    : "a mission, instead of --model: the remaining path or cruise is flown, with its model, its "
-                      "wind, its landing, its battery and its schedule");
+                fmt::format("a mission, instead of --model: the remaining path or cruise is flown, with its model, its "
+                            "wind{}",
+                            with_battery ? ", its landing, its battery and its schedule" : " and its landing"));
     options.add(
         "battery", arguments.battery, input_file("BATTERY.toml"),
         "also predict state of charge and voltage at landing, and how long the cruise could continue from there");
@@ -112,7 +120,7 @@ void add_basis_options(Options& options, BasisArguments& arguments) {
          .min = 0.0,
          .max = 100.0,
          .unit = "%",
-         .needs = needs_path ? std::vector<std::string>{"battery"} : std::vector<std::string>{"battery", "mission"}},
+         .needs = with_battery ? std::vector<std::string>{"battery", "mission"} : std::vector<std::string>{"battery"}},
         "the battery's state of charge when the log begins; else by its voltage at rest");
 }
 

@@ -16,12 +16,9 @@
 /// telemetry.
 namespace flightwatt::cli {
 
-/// Whether a mission has to state its path.
-enum class PathNeed { required, optional };
-
 /// --model, --remaining, --airspeed, --climb, --mission, --battery, --initial-soc.
 struct BasisArguments {
-    PathNeed need = PathNeed::required;
+    bool uses_missions_battery = false;  ///< and its state of charge, where none are given
     std::optional<std::string> model;
     std::optional<double> remaining_s;
     std::optional<double> airspeed_m_per_s;
@@ -34,8 +31,7 @@ struct BasisArguments {
 void add_basis_options(Options& options, BasisArguments& arguments);
 
 /// The input of predictions, with warnings of the model or the mission. Without a path a mission's cruise has the
-/// duration that it states. Where the path is optional, battery and state of charge are the mission's unless they are
-/// given. `mission` becomes the one of --mission. Throws UsageError for options that exclude each other, and as
+/// duration that it states. `mission` becomes the one of --mission. Throws UsageError for options that exclude each other, and as
 /// live::require_spread and live::require_physical.
 live::PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,
                                  std::optional<mission::MissionVariant>* mission = nullptr);

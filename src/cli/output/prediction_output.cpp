@@ -75,12 +75,15 @@ std::string battery_text(const std::optional<BatteryPrediction>& battery) {
 
 /// Whether the power so far is known from the model: of a physical one only with the flight's airspeed.
 bool is_expected(const Prediction& prediction) {
-    return !prediction.overtime_s && (!prediction.uses_physical_model || !prediction.flown.motion.bins.empty());
+    return !prediction.overtime_s && prediction.flown.cruise_s() > 0.0 &&
+           (!prediction.uses_physical_model || !prediction.flown.motion.bins.empty());
 }
 
 std::string expectation_text(const Prediction& prediction) {
-    return is_expected(prediction) ? fmt::format("expected {:.2f} W", prediction.cruise.expected_w)
-                                   : "no measured airspeed to compare with";
+    if (!(prediction.flown.cruise_s() > 0.0)) return "not begun";
+    return fmt::format("so far {:.2f} W, ", prediction.cruise.measured_w) +
+           (is_expected(prediction) ? fmt::format("expected {:.2f} W", prediction.cruise.expected_w)
+                                    : "no measured airspeed to compare with");
 }
 
 /// The phases, and the whole flight.
@@ -113,23 +116,27 @@ std::vector<ScoreRow> score_rows(const std::vector<mechanical::ValidatedFlight>&
 }  // namespace
 
 std::string text_of(const Prediction& prediction) {
-    const auto& [flown, began_in_air, on_path_s, is_sighted, remaining_s, overtime_s, by_motion, cruise, power_ahead,
-                 landing, landing_s, rest, interval, battery] = prediction;
+    const auto& [flown, began_in_air, on_path_s, is_sighted, takeoff_s, takeoff, remaining_s, overtime_s, by_motion,
+                 cruise, power_ahead, landing, landing_s, landing_sd_s, rest, interval, battery] = prediction;
     const auto cruise_text =
         overtime_s ? fmt::format("completed {} ago; so far {:.2f} W", duration_text(*overtime_s), cruise.measured_w)
-                   : fmt::format("{:.3f} Wh in {} more: {:.2f} W; so far {:.2f} W, {}", cruise.energy.energy_wh,
-                                 duration_text(remaining_s), cruise.remaining_mean_w, cruise.measured_w,
-                                 expectation_text(prediction));
+                   : fmt::format("{:.3f} Wh in {} more: {:.2f} W; {}", cruise.energy.energy_wh,
+                                 duration_text(remaining_s), cruise.remaining_mean_w, expectation_text(prediction));
+    const auto takeoff_text = takeoff_s > 0.0 ? fmt::format("take-off   {:.3f} Wh in {} more, as the model's flights\n",
+                                                            takeoff.energy_wh, duration_text(takeoff_s))
+                                              : std::string();
     return fmt::format(
                "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({})\n"
+               "{}"
                "cruise     {}\n"
-               "landing    {:.3f} Wh in {}, as in the model\n"
+               "landing    {:.3f} Wh in {}{}\n"
                "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
                "total      {:.3f} Wh\n",
                flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
-               duration_text(flown.until_s - flown.lift_off_s), cruise_text, landing.energy_wh,
-               duration_text(landing_s), rest.energy_wh, interval.low_wh, interval.high_wh,
-               flown.energy_wh + rest.energy_wh) +
+               duration_text(flown.until_s - flown.lift_off_s), takeoff_text, cruise_text, landing.energy_wh,
+               duration_text(landing_s),
+               landing_sd_s > 0.0 ? fmt::format(" (1 sd: {})", duration_text(landing_sd_s)) : "", rest.energy_wh,
+               interval.low_wh, interval.high_wh, flown.energy_wh + rest.energy_wh) +
            battery_text(battery);
 }
 
@@ -231,6 +238,9 @@ Fields<Prediction> record_fields(const Prediction*) {
         return r.began_in_air ? std::nullopt : std::optional(r.flown.lift_off_s);
     };
     const auto total = [](const R& r) { return r.flown.energy_wh + r.remaining_energy.energy_wh; };
+    const auto flown_w = [](const R& r) {
+        return r.flown.cruise_s() > 0.0 ? std::optional(r.cruise.measured_w) : std::nullopt;
+    };
     const auto by_position = [](const R& r) { return r.on_path_s ? std::optional(r.is_from_position) : std::nullopt; };
     return {
         field("flown_energy_wh", at(&R::flown, &Flown::energy_wh), "measured so far"),
@@ -239,11 +249,14 @@ Fields<Prediction> record_fields(const Prediction*) {
         field("total_energy_wh", total, "measured and predicted"),
         field("lift_off_s", lift_off_s, "in the log's time; null: the record begins in the air"),
         field("until_s", at(&R::flown, &Flown::until_s), "time of the prediction, in the log's time"),
+        object<R>("takeoff", "the rest of the take-off, until the height is held",
+                  {field("remaining_s", &R::takeoff_s, "by the model's flights; 0: in cruise"),
+                   field("energy_wh", at(&R::takeoff, &Energy::energy_wh), "of that time")}),
         object<R>("cruise", "the cruise",
                   {field("remaining_s", &R::remaining_s, "remaining time"),
                    field("overtime_s", &R::overtime_s, "beyond the mission's: lands now", optional_key{}),
                    field("energy_wh", at(&R::cruise, &Cruise::energy, &Energy::energy_wh), "of that time"),
-                   field("flown_mean_w", at(&R::cruise, &Cruise::measured_w), "measured so far"),
+                   field("flown_mean_w", flown_w, "measured so far; null: in take-off"),
                    field("expected_mean_w", expected_w, "by the model for the same time"),
                    field("remaining_mean_w", at(&R::cruise, &Cruise::remaining_mean_w), "predicted"),
                    field("gain", gain(false), "of the curve: fraction of the difference that is carried forward"),
@@ -252,6 +265,7 @@ Fields<Prediction> record_fields(const Prediction*) {
                    field("path_by_position", by_position, "from position fixes; else from the time", optional_key{})}),
         object<R>("landing", "the landing",
                   {field("duration_s", &R::landing_s, "its duration"),
+                   field("duration_sd_s", &R::landing_sd_s, "standard deviation of that; 0: stated"),
                    field("energy_wh", at(&R::landing, &Energy::energy_wh), "its energy")}),
         field("battery", &R::battery, "with `--battery`", optional_key{})};
 }

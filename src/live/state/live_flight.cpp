@@ -1,6 +1,7 @@
 #include "live/live_flight.h"
 
 #include "base/units.h"
+#include "flight/link_gaps.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/select.h"
@@ -132,6 +133,7 @@ class LiveFlight::Impl {
     std::vector<std::string> warnings_;          ///< of the last check
     std::vector<std::string> battery_warnings_;  ///< of its file
     flight::FlightPhases phases_;
+    std::vector<flight::LinkGap> gaps_;               ///< of the power, in the last update
     std::optional<battery::DischargeRecord> record_;  ///< of the last update
     std::string segmentation_error_;
     std::optional<LiveState> last_predicted_;
@@ -151,7 +153,8 @@ LiveState LiveFlight::Impl::update(double silent_s) {
     // The series ends with the last power or altitude, as for predict.
     if (const double now_s = last_time_s(series); std::isfinite(now_s))
         series = truncate_series(std::move(series), now_s);
-    const auto data = select_tracks(series);
+    auto data = select_tracks(series);
+    gaps_ = bridge_link_gaps(data);
     state.aircraft_id = data.aircraft_id;
     state.aircraft_name = data.aircraft_name;
     state.other_senders = {messages_of_.begin(), messages_of_.end()};
@@ -194,7 +197,7 @@ void LiveFlight::Impl::update_flight(const flight::FlightData& data, LiveState& 
     const double now_s = data.last_s;
     update_flight_times(sortie, data.altitude_m, now_s,
                         ended_ || state.time_since_message_s >= options_.silence_threshold_s, state);
-    if (!state.power_w) return;
+    if (!state.power_w || !unknown_energy_reason(gaps_, {&sortie, 1}).empty()) return;
     state.energy_wh = integrated_energy_wh(data.power_w, sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
@@ -229,8 +232,10 @@ void LiveFlight::Impl::predict(const flight::FlightData& data, LiveState& state)
         const auto* sortie = phases_.sorties.empty() ? nullptr : &phases_.sorties.back();
         const auto flown =
             state.began_in_air ? airborne_progress(data, *sortie) : mechanical::progress_of(data, sortie, data.last_s);
-        state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
-        const bool has_cruise_start = !state.began_in_air || sortie->phases.front().phase == flight::Phase::takeoff;
+        const bool is_cruising = flown.cruise_s() > 0.0;
+        if (is_cruising) state.expected_power_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
+        const bool has_cruise_start =
+            is_cruising && (!state.began_in_air || sortie->phases.front().phase == flight::Phase::takeoff);
         std::optional<path::PathFix> fix;
         if (input_->path && !input_->remaining_s && has_cruise_start)
             fix = locate_on_path(*input_->path, data, flown.cruise_start_s, flown.until_s);
@@ -312,6 +317,9 @@ void LiveFlight::Impl::check_record(const flight::FlightData& data, const LiveSt
         auto assessment = assess_flight(data, phases_);
         rejected_ = fmt::format("{}", fmt::join(assessment.power.power_faults, ", "));
         warnings_ = texts_of(assessment.diagnostics, Severity::warning);
+        std::ranges::move(gap_warnings(gaps_, phases_.sorties), std::back_inserter(warnings_));
+        if (rejected_.empty() && !phases_.sorties.empty())
+            rejected_ = unknown_energy_reason(gaps_, {&phases_.sorties.back(), 1});
     } catch (const std::exception& error) {
         warnings_ = {error.what()};
     }

@@ -110,6 +110,7 @@ struct ModelDeviation {
 };
 
 ModelDeviation model_deviation(const Prediction& prediction, const PredictionInput& input) {
+    if (!(prediction.flown.cruise_s() > 0.0)) return {};
     if (prediction.uses_physical_model) {
         const auto& model = input.model.physical.value();
         const double level = prediction.cruise.gain;

@@ -188,7 +188,7 @@ bool ClockFilter::hold(IncomingMessage message, std::vector<IncomingMessage>& ac
     held_.push_back(std::move(message));
     if (held_.size() < min_confirmations) return false;
     const double step_s = *held_.front().time_s - latest_s_;
-    const bool restarted = step_s < -max_step_s || step_s > max_gap_s;
+    const bool restarted = step_s < -max_step_s;
     const double back_s = restarted ? offset_s_ : std::min(step_s, 0.0);
     if (!restarted && step_s < 0.0) ++steps_back_;
     offset_s_ -= back_s;

@@ -63,14 +63,13 @@ class TelemetryStore {
 /// Accepts, corrects or holds the times of one sender, so that an error of one does not affect the others:
 /// - within 10 s of the latest: accepted;
 /// - otherwise held until five lines agree; then
-///   - forwards: a gap; by more than ten minutes a restart, as the clock may have been set;
+///   - forwards: a gap, of any duration, as a link may be lost for as long;
 ///   - backwards by a minute or more: a restart;
 ///   - backwards by less: a clock that was set back, which is corrected, so that time continues.
 class ClockFilter {
   public:
     static constexpr double max_step_s = 60.0;
     static constexpr double max_off_s = 10.0;
-    static constexpr double max_gap_s = 600.0;
     static constexpr std::size_t min_confirmations = 5;
     static constexpr double late_s = 2.0;
 

@@ -16,33 +16,33 @@ namespace {
 
 std::string path_of(const char* below_source) { return (test::source_dir() / below_source).string(); }
 
-BasisArguments arguments_of(const std::vector<std::string>& words, PathNeed need) {
+BasisArguments arguments_of(const std::vector<std::string>& words, bool with_battery) {
     BasisArguments arguments;
-    arguments.need = need;
+    arguments.uses_missions_battery = with_battery;
     Options options;
     add_basis_options(options, arguments);
     test::give_options(options, words);
     return arguments;
 }
 
-live::PredictionInput basis_of(const std::vector<std::string>& words, PathNeed need,
+live::PredictionInput basis_of(const std::vector<std::string>& words, bool with_battery,
                                std::optional<mission::MissionVariant>* mission = nullptr) {
     StageCall call;
     call.program = "test";
-    return read_basis(call, arguments_of(words, need), mission);
+    return read_basis(call, arguments_of(words, with_battery), mission);
 }
 
 TEST(BasisOptions, OfAMissionWithoutAPathTakeItsCruiseAndItsBattery) {
     const std::vector<std::string> words{"--mission", path_of("missions/synthetic/thevenin-plan.toml")};
     std::optional<mission::MissionVariant> mission;
-    const auto basis = basis_of(words, PathNeed::optional, &mission);
+    const auto basis = basis_of(words, true, &mission);
     ASSERT_TRUE(mission);
     EXPECT_EQ(basis.cruise_s, 1800.0);
     EXPECT_EQ(basis.limits.reserve_soc_percent, 20.0);
     EXPECT_TRUE(basis.battery && basis.battery->thevenin);
     EXPECT_FALSE(basis.initial_soc_percent) << "its voltage tells it";
     EXPECT_FALSE(basis.no_prediction_reason.empty()) << "a published model has no spread";
-    EXPECT_THROW(basis_of(words, PathNeed::required), InputError);
+    EXPECT_THROW(basis_of(words, false), InputError) << "which predict cannot do without";
 }
 
 TEST(BasisOptions, ThatAreGivenCountBeforeTheMissions) {
@@ -50,7 +50,7 @@ TEST(BasisOptions, ThatAreGivenCountBeforeTheMissions) {
                                          "--battery",     path_of("fits/battery/paper.toml"),
                                          "--remaining",   "60",
                                          "--initial-soc", "77"};
-    const auto basis = basis_of(words, PathNeed::optional);
+    const auto basis = basis_of(words, true);
     EXPECT_FALSE(basis.battery->thevenin);
     EXPECT_EQ(basis.initial_soc_percent, 77.0);
     EXPECT_EQ(basis.remaining_s, 60.0);
@@ -64,7 +64,7 @@ TEST(BasisOptions, RefuseWhatDoesNotFitTogether) {
                                                         {"--model", model},
                                                         {"--model", model, "--remaining", "10", "--climb", "1"},
                                                         {"--model", model, "--remaining", "10", "--initial-soc", "50"}};
-    for (const auto& words : refused) EXPECT_THROW(basis_of(words, PathNeed::optional), UsageError);
+    for (const auto& words : refused) EXPECT_THROW(basis_of(words, true), UsageError);
 }
 
 }  // namespace

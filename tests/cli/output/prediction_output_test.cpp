@@ -18,6 +18,7 @@ using testing::HasSubstr;
 Prediction made_up() {
     Prediction prediction;
     prediction.flown.energy_wh = 1.0;
+    prediction.flown.cruise_start_s = 50.0;
     prediction.flown.until_s = 100.0;
     prediction.remaining_s = 360.0;
     prediction.cruise.remaining_mean_w = 20.0;
@@ -41,6 +42,18 @@ TEST(PredictionOutput, SaysWhatWasExpectedSoFar) {
     EXPECT_THAT(text_of(prediction), HasSubstr("expected 0.00 W"));
     EXPECT_EQ(record_json(prediction)["cruise"]["own_level"], 0.25);
     EXPECT_TRUE(record_json(prediction)["cruise"]["gain"].is_null());
+}
+
+TEST(PredictionOutput, HasTheRestOfATakeoff) {
+    auto prediction = made_up();
+    prediction.flown.cruise_start_s = prediction.flown.until_s;
+    prediction.takeoff_s = 12.0;
+    prediction.takeoff.energy_wh = 0.25;
+    EXPECT_THAT(text_of(prediction), HasSubstr("take-off   0.250 Wh in 12.0 s more"));
+    EXPECT_THAT(text_of(prediction), HasSubstr("20.00 W; not begun"));
+    const auto json = record_json(prediction);
+    EXPECT_EQ(json["takeoff"]["remaining_s"], 12.0);
+    EXPECT_TRUE(json["cruise"]["flown_mean_w"].is_null());
 }
 
 TEST(PredictionOutput, SaysHowTheBatteryLands) {
