@@ -47,8 +47,9 @@
     if (!prediction) return ["waiting", phaseNames[state.phase], state.no_prediction_reason ? `No prediction: ${state.no_prediction_reason}` : ""];
     if (!prediction.battery) return ["waiting", phaseNames[state.phase], `${number(prediction.remaining_energy_wh, 1)} Wh to the landing`];
     const [kept, missed] = state.reserve_soc_percent > 0 ? ["Reserve is kept", "miss the reserve"] : ["Battery lasts", "run empty"];
-    const share = Math.round(100 * (battery.probability_below_reserve ?? 0));
+    const share = Math.round(100 * battery.probability_below_reserve);
     if (isKnown(overtime)) return ["ok", kept, `If it lands now: the planned cruise ended ${durationText(overtime)} ago`];
+    if (!isKnown(battery.probability_below_reserve)) return ["ok", kept, `How many flights would ${missed} is unknown`];
     return ["ok", kept, `${share < 1 ? "Under 1" : share} of 100 flights would ${missed}`];
   }
   const signs = {
@@ -67,7 +68,7 @@
     if (landing && isKnown(landing.fails_after_s)) return ["Battery empty in", ...duration(landing.fails_after_s), "before the landing"];
     if (landing) {
       const reserve = state.reserve_soc_percent > 0 ? `reserve ${number(state.reserve_soc_percent, 0)} %` : "";
-      const low = `at worst ${isKnown(worst.fails_after_s) ? "empty" : `${number(worst.soc_percent, 0)} %`}`;
+      const low = `at most 1 of 40 flights ${isKnown(worst.fails_after_s) ? "runs empty" : `below ${number(worst.soc_percent, 0)} %`}`;
       return [isKnown(prediction.cruise.overtime_s) ? "Charge if it lands now" : "Charge at landing", number(landing.soc_percent, 1), "%", sentence(reserve, low)];
     }
     if (prediction) return ["Energy to the landing", number(prediction.remaining_energy_wh, 1), "Wh", ""];

@@ -3,7 +3,7 @@
 #include "flight/column_map.h"
 
 #include "flight/load_flight.h"
-#include "flight/sources/mapped_csv.h"
+#include "flight/families/mapped_csv.h"
 #include "fuzz/fuzz_target.h"
 
 #include <string>

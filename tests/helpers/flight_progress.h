@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/segmentation.h"
+#include "flight/segment.h"
 #include "flight/select.h"
 #include "mechanical/flight_progress.h"
 
