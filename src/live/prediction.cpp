@@ -175,7 +175,7 @@ DurationEstimate takeoff_ahead(const PredictionInput& input, const FlightProgres
     return rest;
 }
 
-/// The energies of the remaining take-off and of the landing beside a cruise that was predicted by itself.
+/// The energies of the remaining take-off and of the landing, next to a cruise that was predicted by itself.
 void add_other_phases(const PredictionInput& input, Prediction& prediction) {
     if (prediction.takeoff_s > 0.0)
         prediction.takeoff = mechanical::predict_remaining_before_flight(

@@ -2,8 +2,8 @@
 
 #include "flight/column_map.h"
 
-#include "flight/load_flight.h"
 #include "flight/families/mapped_csv.h"
+#include "flight/load_flight.h"
 #include "fuzz/fuzz_target.h"
 
 #include <string>

@@ -281,7 +281,7 @@ TEST(Predict, RefusesWhatCannotBePredicted) {
     EXPECT_EQ(predict("--at 300 --at-log-time 300 --remaining 100"), 2);
     EXPECT_EQ(predict("--at 300 --remaining=-1"), 2);
     EXPECT_EQ(predict("--at nan --remaining 1"), 2);
-    EXPECT_EQ(predict("--at 10 --remaining 100"), 4);   // climbing
+    EXPECT_EQ(predict("--at 10 --remaining 100"), 0);   // climbing
     EXPECT_EQ(predict("--at 700 --remaining 100"), 4);  // landed
     EXPECT_EQ(predict("--at 300 --remaining 100 --sortie 2"), 4);
 }

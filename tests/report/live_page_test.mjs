@@ -73,6 +73,7 @@ test("charts move while a flight is played, and the page outlives its server", a
   await eventually("the cruise is seen and predicted", async () => /Charge at landing/.test(await page.locator("#answers").innerText()));
   assert.match(await page.title(), /^Battery lasts/);
   assert.equal(await page.locator("button, input, select, textarea, a").count(), 0, "the page offers no command");
+  await eventually("the turn home is known", async () => (await page.locator("#answers .number").count()) === 3);
   const sizes = await page.locator("#answers .number").evaluateAll((numbers) => numbers.map((of) => parseFloat(getComputedStyle(of).fontSize)));
   assert.ok(sizes.length === 3 && sizes.every((size) => size >= 48), `three numbers of 48 px or more: ${sizes}`);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "it scrolls sideways");

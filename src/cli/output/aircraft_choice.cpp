@@ -56,8 +56,7 @@ void note_other_flights(const StageCall& call, AircraftGroups groups, const batc
         else
             std::ranges::move(names_of(group, flights), std::back_inserter(others));
     }
-    if (!others.empty())
-        note(call, fmt::format("left out, as of other aircraft: {}", short_list(others)));
+    if (!others.empty()) note(call, fmt::format("left out, as of other aircraft: {}", short_list(others)));
 }
 
 ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::string>& aircraft,

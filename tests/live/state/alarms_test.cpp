@@ -22,6 +22,7 @@ LiveState flying(double probability, const std::optional<double>& latest_in_s = 
     state.prediction.emplace();
     state.prediction->uses_physical_model = true;
     state.prediction->on_path_s = 100.0;
+    state.prediction->flown.until_s = state.prediction->flown.cruise_start_s + 100.0;
     state.prediction->battery.emplace();
     state.prediction->battery->limits.reserve_soc_percent = 20.0;
     state.prediction->battery->expected.soc_percent = 23.4;
