@@ -122,7 +122,7 @@ std::optional<FittedBatch> fit_batch(const cli::StageCall& call, const BatchArgu
     auto& fit = fitted.fit;
     if (kind == cli::ModelKind::physical) fitted.physical = cli::fit_motion(call, measured, fit.model);
     for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
-    if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fit.model);
+    if (kind != cli::ModelKind::fourier) cli::add_best_power(measured, options, fit.model);
     fit.copies = std::move(copies);
     fit.excluded = batch.load.excluded;
     fit.keep = batch.load.keep;
@@ -352,7 +352,6 @@ int run_over_logs(const cli::StageCall& call, const BatchArguments& arguments) {
     options.out = *call.output;
     options.load = arguments.flights.load;
     options.load.aircraft_required = false;
-    options.min_samples = mechanical::min_samples(arguments.model.fit.phases.order);
     const auto published = read_published(arguments.model);
     make_directories(options.out);
     const batch::FolderLock lock(options.out);
@@ -406,7 +405,6 @@ It may be ended at any time (Ctrl-C): the same command continues where it stoppe
     stage.output_value = "DIR";
     stage.output_help = "the folder of the results";
     BatchArguments arguments;
-    arguments.model.kind = cli::ModelKind::best;
     arguments.model.fit.name = "batch";
     auto& options = stage.options;
     cli::add_model_options(options, arguments.model);

@@ -214,7 +214,7 @@ double compute_w(const mission::MissionVariant& mission) {
 exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::EstimatorInput result,
                                          const std::vector<ExportInput>& inputs) {
     for (const auto& [file, kind] : inputs) {
-        if (kind == ExportKind::model) result.model = mechanical::read_mechanical_model(file);
+        if (kind == ExportKind::model) result.model = mechanical::read_predicting_model(file);
         if (kind == ExportKind::battery) {
             result.battery = battery::read_battery(file);
             for (const auto& warning : battery_warnings(*result.battery))
@@ -272,10 +272,10 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
     if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, arguments, file, format);
     if (format == "csv") return export_columns(call, arguments, file);
     if (format == "latex") return export_latex(call, arguments, inputs);
-    if (format == "c") return {exchange::to_c_header(mechanical::read_mechanical_model(file))};
+    if (format == "c") return {exchange::to_c_header(mechanical::read_predicting_model(file))};
     return {inputs.front().kind == ExportKind::battery
                 ? exchange::to_json_text(battery::read_battery(file))
-                : exchange::to_json_text(mechanical::read_mechanical_model(file))};
+                : exchange::to_json_text(mechanical::read_predicting_model(file))};
 }
 
 int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) {

@@ -60,7 +60,7 @@ void fit_flights(const cli::StageCall& call, FitStageArguments arguments,
         arguments.with_intervals ? mechanical::TableIntervals::present : mechanical::TableIntervals::absent);
     std::optional<mechanical::PhysicalFit> physical;
     if (with_motion) physical = cli::fit_motion(call, measured, fitted.model, arguments.headwind_m_per_s);
-    if (kind == cli::ModelKind::best) cli::add_best_power(measured, options, fitted.model);
+    if (kind != cli::ModelKind::fourier) cli::add_best_power(measured, options, fitted.model);
     if (table_file) write_file_atomically(*table_file, cli::table_text(table, *table_file));
     if (constants_file)
         write_file_atomically(*constants_file, cli::table_text(cli::constants_table(physical->model), *constants_file,
@@ -101,7 +101,9 @@ int fit_each(const cli::StageCall& call, const FitStageArguments& arguments,
     return code;
 }
 
-int fit(const cli::StageCall& call, const FitStageArguments& arguments) {
+int fit(const cli::StageCall& call, FitStageArguments arguments) {
+    if (arguments.model.published && !call.has("model-kind"))
+        arguments.model.kind = cli::ModelKind::fourier;  // which is compared
     check_table_file(arguments.table_file);
     check_table_file(arguments.constants_file);
     for (const auto* option : {"constants", "headwind"})
@@ -112,7 +114,7 @@ int fit(const cli::StageCall& call, const FitStageArguments& arguments) {
     const auto published = read_published(arguments.model);
     const auto measured =
         cli::measured_by_aircraft(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
-                                  arguments.flights, mechanical::min_samples(arguments.model.fit.phases.order));
+                                  arguments.flights);
     if (arguments.flights.each) return fit_each(call, arguments, measured, published);
     fit_flights(call, arguments, measured.front().flights, published);
     return cli::ok;
@@ -124,7 +126,9 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "fit", "FLIGHT.data|SERIES.csv|FOLDER...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
-frequency for all flights, averaged over the flights with weights. The model goes to the standard output
+frequency for all flights, averaged over the flights with weights. A phase is predicted by its mean power
+where the samples do not determine the curve, or it predicts flights left out of the fit worse; the model's
+file says which and why. With --published the curves predict. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.next = [](const auto& call) {

@@ -113,9 +113,8 @@ int merge(const cli::StageCall& call, bool prune) {
     batch::prepare_folder(plan.folder, out);
     remove_model(call, out);
     cli::ProgressBar progress("flights");
-    const auto needed = mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order);
     auto flights = batch::merge_flights(
-        plan, out, needed, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
+        plan, out, [&](std::size_t done, std::size_t all, const auto&) { progress.show(done, all); });
     progress.hide();
     const auto copies = batch::find_duplicates(flights);
     exclude_duplicates(flights, copies);

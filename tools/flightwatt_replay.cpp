@@ -43,9 +43,8 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
     mission::ReplayOptions options;
     options.fit = arguments.fit;
     const auto missions = read_missions(call, arguments.missions);
-    if (arguments.model) options.model = mechanical::read_mechanical_model(*arguments.model);
-    const auto flights =
-        cli::measured_flights(call, arguments.flights, mechanical::min_samples(options.fit.phases.order));
+    if (arguments.model) options.model = mechanical::read_predicting_model(*arguments.model);
+    const auto flights = cli::measured_flights(call, arguments.flights);
     cli::ProgressBar replaying("replays");
     options.progress = replaying.callback();
     auto replays = replay_flights(missions, flights, options);

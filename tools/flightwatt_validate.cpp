@@ -41,10 +41,10 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
 
 /// The flights of all inputs. In flight, those that are not in the air at the moment are excluded.
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const cli::FlightArguments& arguments,
-                                                     std::size_t needed_samples, const std::optional<double>& at_s) {
-    if (!at_s) return cli::measured_flights(call, arguments, needed_samples);
+                                                     const std::optional<double>& at_s) {
+    if (!at_s) return cli::measured_flights(call, arguments);
     return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded, needed_samples);
+        auto measured = mechanical::extract_flights(loaded);
         cli::add_exclusions(call, arguments, file, measured.exclusions);
         return in_the_air(call, loaded, std::move(measured), *at_s);
     });
@@ -59,7 +59,7 @@ struct ValidateArguments {
 
 int validate_flights(const cli::StageCall& call, const ValidateArguments& arguments) {
     const auto& [options, at_s, folds, flight_arguments] = arguments;
-    const auto flights = read_flights(call, flight_arguments, mechanical::min_samples(options.phases.order), at_s);
+    const auto flights = read_flights(call, flight_arguments, at_s);
     cli::note_folds(call, flights.size(), folds);
     cli::ProgressBar fitting("fits");
     auto validated = leave_one_out(flights, options, fitting.callback(), folds);

@@ -135,7 +135,7 @@ FlightRecords do_accepted(const flight::FlightFile& file, const LogFile& log, co
 BatchFlights flights_of(FlightRecords records, bool were_up_to_date, const BatchOptions& options) {
     BatchFlights flights;
     for (auto& record : records) {
-        flights.push_back(without_samples(std::move(record), options.min_samples, options.load));
+        flights.push_back(without_samples(std::move(record), options.load));
         flights.back().was_up_to_date = were_up_to_date;
     }
     return flights;
@@ -232,9 +232,9 @@ std::vector<const BatchFlight*> candidates_among(const BatchFlights& flights) {
 
 }  // namespace
 
-BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const flight::LoadOptions& options) {
+BatchFlight without_samples(FlightRecord record, const flight::LoadOptions& options) {
     BatchFlight done;
-    auto measured = select_for_fit(record, min_samples, options);
+    auto measured = select_for_fit(record, options);
     done.selection.flights.reserve(measured.flights.size());
     for (auto& flight : measured.flights) {
         SelectedSortie sortie{std::move(flight.samples.flight), {}};
@@ -280,7 +280,7 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
         auto record = record_from_json(read_file(file));
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
         record->flight = flight.record.flight;  // also of a name that is not UTF-8
-        of_logs[i] = select_for_fit(*record, options.min_samples, options.load).flights;
+        of_logs[i] = select_for_fit(*record, options.load).flights;
     });
     std::vector<mechanical::MeasuredFlight> measured;
     for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(measured));

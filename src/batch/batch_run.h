@@ -45,7 +45,6 @@ struct BatchOptions {
     std::filesystem::path out;
     flight::LoadOptions load;
     unsigned jobs = 0;  ///< logs at a time; 0: one a core
-    std::size_t min_samples = 8;
 };
 
 /// The flights of all logs from those of each.
@@ -63,7 +62,7 @@ BatchFlights run_batch(const std::vector<LogFile>& logs, const BatchOptions& opt
 std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights, const BatchOptions& options);
 
 /// The result of a log: the selection of select_for_fit, without the samples.
-BatchFlight without_samples(FlightRecord record, std::size_t min_samples, const flight::LoadOptions& options);
+BatchFlight without_samples(FlightRecord record, const flight::LoadOptions& options);
 
 /// A duplicate of another flight.
 struct DuplicateFlight {

@@ -228,7 +228,7 @@ FlightRecord record_of(const flight::LoadedFlight& loaded) {
     record.diagnostics = loaded.diagnostics;
     record.power_faults = loaded.power.power_faults;
     record.no_power_reason = loaded.lacks_power;
-    if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(data, phases, 0);
+    if (record.no_power_reason.empty()) record.measured = mechanical::extract_flights(data, phases);
     record.circuits = circuit_shares(data, phases);
     const flight::PowerStatistics power(data);
     for (const auto& sortie : phases.sorties) {
@@ -279,8 +279,7 @@ std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptio
     return record.not_fitted_reason;
 }
 
-mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
-                                           const flight::LoadOptions& options) {
+mechanical::MeasuredFlights select_for_fit(FlightRecord& record, const flight::LoadOptions& options) {
     auto measured = std::exchange(record.measured, {});
     if (const auto exclusion = exclusion_reason(record, options); !exclusion.empty() && record.accepted) {
         measured.flights.clear();
@@ -288,7 +287,6 @@ mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t nee
         measured.exclusions.push_back({record.flight, std::nullopt, exclusion});
         return measured;
     }
-    mechanical::exclude_short_phases(measured, needed_samples);
     return measured;
 }
 

@@ -85,7 +85,6 @@ std::optional<FlightRecord> record_from_json(const std::string& text);
 std::string exclusion_reason(const FlightRecord& record, const flight::LoadOptions& options);
 
 /// The samples of a flight for a fit, moved out of the record.
-mechanical::MeasuredFlights select_for_fit(FlightRecord& record, std::size_t needed_samples,
-                                           const flight::LoadOptions& options);
+mechanical::MeasuredFlights select_for_fit(FlightRecord& record, const flight::LoadOptions& options);
 
 }  // namespace flightwatt::batch

@@ -155,7 +155,7 @@ void copy_renamed(const std::filesystem::path& out, const MergedFlight& source, 
 
 /// Copies a flight of one recording under that name.
 BatchFlight merge_recording(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
-                            std::size_t needed_samples, const flight::LoadOptions& options) {
+                            const flight::LoadOptions& options) {
     const OverwriteExemption own;  // results of batches, not inputs
     const auto text = read_file(result_path(source.from, source.flight, record_suffix));
     auto record = read_verified_record(source.from, source.flight);
@@ -165,18 +165,18 @@ BatchFlight merge_recording(const std::filesystem::path& out, const MergedFlight
     } else if (!is_up_to_date) {
         copy_flight(out, source, record.accepted);
     }
-    auto merged = without_samples(std::move(record), needed_samples, options);
+    auto merged = without_samples(std::move(record), options);
     merged.was_up_to_date = is_up_to_date;
     return merged;
 }
 
 /// Copies the flights of a log, the first recording's under that name.
 BatchFlights merge_flight(const std::filesystem::path& out, const MergedFlight& source, const std::string& name,
-                          std::size_t needed_samples, const flight::LoadOptions& options) {
-    BatchFlights merged{merge_recording(out, source, name, needed_samples, options)};
+                          const flight::LoadOptions& options) {
+    BatchFlights merged{merge_recording(out, source, name, options)};
     for (const auto number : std::vector(merged.front().record.recordings)) {
         const MergedFlight other{source.from, flight::recording_name(source.flight, number)};
-        merged.push_back(merge_recording(out, other, flight::recording_name(name, number), needed_samples, options));
+        merged.push_back(merge_recording(out, other, flight::recording_name(name, number), options));
     }
     return merged;
 }
@@ -211,14 +211,14 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
     return plan;
 }
 
-BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
-                           const BatchProgress& progress, const flight::LoadOptions& options) {
+BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, const BatchProgress& progress,
+                           const flight::LoadOptions& options) {
     make_directories(out / temporary_folder);
     std::vector<BatchFlights> of_logs(plan.sources.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;
     for_each_in_parallel(of_logs.size(), [&](std::size_t i) {
-        of_logs[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, needed_samples, options);
+        of_logs[i] = merge_flight(out, plan.sources[i], plan.folder.logs[i].flight, options);
         const std::lock_guard lock(mutex);
         ++done;
         for (const auto& flight : of_logs[i]) progress(done, of_logs.size(), flight);
@@ -234,7 +234,7 @@ BatchFlights copy_flights(const std::filesystem::path& from, const std::set<std:
     const RemoveIfEmpty unfinished{to.out / temporary_folder};
     prepare_folder(plan.folder, to.out);
     return merge_flights(
-        plan, to.out, to.min_samples, [](std::size_t, std::size_t, const BatchFlight&) {}, to.load);
+        plan, to.out, [](std::size_t, std::size_t, const BatchFlight&) {}, to.load);
 }
 
 }  // namespace flightwatt::batch

@@ -35,8 +35,8 @@ MergePlan plan_merge(const std::vector<std::filesystem::path>& batches, const st
 /// Copies every flight into OUT/flights after verifying its fingerprints (hard links where possible); up-to-date ones
 /// stay. In the order of the plan, without the samples, after prepare_folder. Throws InputError for a changed flight,
 /// OutputError where OUT cannot be written.
-BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, std::size_t needed_samples,
-                           const BatchProgress& progress, const flight::LoadOptions& options = {});
+BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& out, const BatchProgress& progress,
+                           const flight::LoadOptions& options = {});
 
 /// Makes a batch of some flights of another batch, with its lists of files, and without a catalogue and a fit.
 BatchFlights copy_flights(const std::filesystem::path& from, const std::set<std::string>& flights,

@@ -84,7 +84,7 @@ double initial_soc_percent(const PredictionInput& input, const battery::Discharg
 double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
 
 /// Predicts the remaining flight from its progress and its series until now; of a cruise beyond the mission's, a
-/// landing from now. Throws NoResultError where more charge was drawn than available, UsageError for a remaining time
+/// landing from now. Throws NoResultError where more charge was drawn than available, or an energy below 0 is predicted, UsageError for a remaining time
 /// longer than the path, and as mechanical::predict_remaining_flight and battery::discharge_records.
 Prediction predict_flight(const PredictionInput& input, const mechanical::FlightProgress& flown,
                           const flight::FlightData& data, Remarks& remarks);

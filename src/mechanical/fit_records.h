@@ -51,8 +51,10 @@ struct PhaseFit {
     bool is_clamped = false;  ///< harmonics were reduced (hold_above_zero)
 };
 
-/// Minimum number of samples of a flight: one more than its coefficients.
-constexpr std::size_t min_samples(int order) { return static_cast<std::size_t>(coefficient_count(order)) + 1; }
+/// Minimum number of samples of a flight: one more than its coefficients; one for a mean (order 0).
+constexpr std::size_t min_samples(int order) {
+    return order == 0 ? 1 : static_cast<std::size_t>(coefficient_count(order)) + 1;
+}
 
 /// The range of theta: from pi to 120 periods, and below the frequency at which, in some flight, the highest harmonic
 /// has less than two samples a period (of the median gap), or little more. Throws UsageError for an invalid order, NoResultError for an empty range.

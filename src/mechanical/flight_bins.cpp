@@ -115,8 +115,8 @@ std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie) {
 
 BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight::PhaseSegment>& spans, double bin_s) {
     BinnedFlight motion{data.flight, {}, false, no_bins_reason(data)};
-    if (!motion.no_bins_reason.empty()) return motion;
     motion.is_rotorcraft = data.is_rotorcraft();
+    if (!motion.no_bins_reason.empty()) return motion;
     const auto payload_kg = first_value(data.payload_kg);
     motion.payload_known = payload_kg.has_value();
     motion.load.payload_kg = payload_kg.value_or(0.0);

@@ -22,11 +22,6 @@ std::string exclusion_reason(const flight::PhaseSpan& span) {
     return fmt::format("its {} is in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
 }
 
-std::string too_few_reason(const PhaseSamples& samples, std::size_t needed) {
-    if (samples.tau.size() >= needed) return "";
-    return fmt::format("{} samples, {} are needed", samples.tau.size(), needed);
-}
-
 PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
@@ -82,8 +77,7 @@ std::optional<double> pack_voltage_v(const flight::FlightData& data) {
     return quantile(values, 1.0 - exceeded_by);
 }
 
-MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases,
-                                std::size_t needed_samples) {
+MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases) {
     MeasuredFlights measured;
     const auto voltage_v = pack_voltage_v(data);
     const flight::PowerStatistics statistics_of_power(data);
@@ -97,7 +91,7 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
             auto reason = exclusion_reason(span);
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             if (reason.empty()) flight.power[span.phase] = power_over(data.power_w, span, statistics);
-            if (reason.empty()) reason = too_few_reason(samples, needed_samples);
+            if (reason.empty() && samples.tau.empty()) reason = "it has no sample of the power";
             if (!reason.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(reason)});
                 continue;
@@ -115,29 +109,9 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
     return measured;
 }
 
-MeasuredFlights extract_flights(const flight::LoadedFlight& loaded, std::size_t needed_samples) {
+MeasuredFlights extract_flights(const flight::LoadedFlight& loaded) {
     if (!loaded.exclusion.empty()) return {{}, {{loaded.data.flight, std::nullopt, loaded.exclusion}}, {}};
-    return extract_flights(loaded.data, loaded.phases, needed_samples);
-}
-
-void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples) {
-    MeasuredFlights kept{{}, std::move(measured.exclusions), {}};
-    for (std::size_t i = 0; i < measured.flights.size(); ++i) {
-        auto& flight = measured.flights[i];
-        for (const auto phase : flight::all_phases) {
-            auto& samples = flight.samples.phases[phase];
-            auto reason = samples ? too_few_reason(*samples, needed_samples) : "";
-            if (reason.empty()) continue;
-            kept.exclusions.push_back({flight.samples.flight, phase, std::move(reason)});
-            samples.reset();
-            flight.energy_wh[phase].reset();
-            flight.counter_energy_wh[phase].reset();
-        }
-        if (!has_any_phase(flight)) continue;
-        kept.flights.push_back(std::move(flight));
-        kept.sorties.push_back(measured.sorties[i]);
-    }
-    measured = std::move(kept);
+    return extract_flights(loaded.data, loaded.phases);
 }
 
 }  // namespace flightwatt::mechanical

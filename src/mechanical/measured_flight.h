@@ -49,7 +49,7 @@ std::optional<double> pack_voltage_v(const flight::FlightData& data);
 
 /// The flights of one log, a sortie each: power samples of complete phases on their own normalised time, without those
 /// at the ends that have the neighbouring phase's power (PhaseSamples::edge_samples), and the measured energy of all
-/// samples. Excluded are phases that are incomplete, have too few samples, or begin or end in a gap longer than a
+/// samples. Excluded are phases that are incomplete, have no sample, or begin or end in a gap longer than a
 /// quarter of them; their power is included where the edges are known.
 struct MeasuredFlights {
     std::vector<MeasuredFlight> flights;
@@ -57,13 +57,9 @@ struct MeasuredFlights {
     std::vector<std::size_t> sorties;  ///< of each flight, counted from 0
 };
 
-MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases,
-                                std::size_t needed_samples);
+MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases);
 
 /// The same of a flight that may be excluded as a whole.
-MeasuredFlights extract_flights(const flight::LoadedFlight& loaded, std::size_t needed_samples);
-
-/// Excludes the phases that have fewer samples, and flights without any other.
-void exclude_short_phases(MeasuredFlights& measured, std::size_t needed_samples);
+MeasuredFlights extract_flights(const flight::LoadedFlight& loaded);
 
 }  // namespace flightwatt::mechanical

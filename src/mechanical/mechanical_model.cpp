@@ -39,13 +39,15 @@ std::string_view bound_reached(const PhaseModel& phase) {
 
 }  // namespace
 
-std::string_view default_model(const ModelValidation& validation) {
-    return validation.prefers_curve ? "fourier" : "constant_mean";
+std::string default_model(const MechanicalModel& model) {
+    const auto means = std::ranges::count_if(
+        model.phases.values, [](const auto& phase) { return phase.power.by == PowerBasis::mean; });
+    return means == 0 ? "fourier" : means == std::ssize(model.phases.values) ? "constant_mean" : "by_phase";
 }
 
-MechanicalModel with_default_power(MechanicalModel model) {
-    if (!model.validation || model.validation->prefers_curve) return model;
-    for (const auto phase : flight::all_phases) use_mean_power(model, phase);
+MechanicalModel with_decided_power(MechanicalModel model) {
+    for (const auto phase : flight::all_phases)
+        if (model.phases[phase].power.by == PowerBasis::mean) use_mean_power(model, phase);
     return model;
 }
 
@@ -128,6 +130,7 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
     std::vector<std::string> warnings;
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
+        if (fitted.power.by == PowerBasis::mean) continue;
         const auto curve =
             curve_w(fitted.fourier, fitted.duration_s, curve_point_count(fitted.fourier, fitted.duration_s));
         if (const double lowest_w = *std::ranges::min_element(curve); lowest_w < 0.0)
@@ -146,6 +149,8 @@ std::vector<std::string> fit_notes(const MechanicalModel& model) {
         const auto note = [&](const std::string& text) {
             notes.push_back(fmt::format("{}: {}", to_string(phase), text));
         };
+        if (fitted.power.by == PowerBasis::mean)
+            note(fmt::format("predicted by its mean power: {}", fitted.power.reason));
         if (fitted.edge_samples > 0)
             note(fmt::format("{} sample{} left out at its ends: the power is that of the neighbouring phase",
                              fitted.edge_samples, fitted.edge_samples == 1 ? " was" : "s were"));

@@ -82,6 +82,20 @@ struct PhaseModel;
 /// The coefficients' intervals by Student's t, that of the frequency within its range. The phase must have errors.
 CoefficientIntervals coefficient_intervals(const PhaseModel& phase);
 
+/// How missions and predictions take the power of a phase.
+enum class PowerBasis {
+    curve,  ///< the Fourier series
+    mean    ///< the flights' mean power
+};
+
+constexpr std::string_view to_string(PowerBasis power) { return power == PowerBasis::mean ? "mean" : "curve"; }
+
+/// The decision on a phase's power, made when the model is fitted (decide_power).
+struct PowerDecision {
+    PowerBasis by = PowerBasis::curve;
+    std::string reason = {};  ///< empty: nothing was decided, as in published models
+};
+
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and its basis.
 struct PhaseModel {
     FourierModel fourier;
@@ -97,7 +111,8 @@ struct PhaseModel {
     std::optional<PhaseErrors> errors = {};     ///< absent unless they were asked for
     std::optional<FlightEnvelope> spread = {};  ///< absent too where a single flight counts
     /// Absent with fewer than 2 flights, or if published without.
-    std::optional<VarianceComponents> level_spread = {};
+    std::optional<VarianceComponents> level_spread = {};  ///< its drift is about what predicts the phase
+    PowerDecision power = {};
 };
 
 /// One flight's part in one phase.
@@ -116,19 +131,16 @@ struct FlightContribution {
 
 /// Errors of one model on hold-out flights.
 struct HeldOutScore {
-    std::string model;  ///< as leave_one_out calls it
+    std::string model;  ///< as leave_one_out calls it, or as default_model
     std::size_t flights = 0;
     double mean_absolute_error_percent = 0.0;  ///< of the flights' energy
 };
 
 /// Cross-validation of the models of a file (validation_of).
 struct ModelValidation {
-    bool prefers_curve = false;        ///< to the mean power of each phase, where nothing states an airspeed
+    std::string default_model;         ///< of missions that state no airspeed (default_model)
     std::vector<HeldOutScore> scores;  ///< without rejected models
 };
-
-/// The model that missions use where they state no airspeed, as leave_one_out calls it.
-std::string_view default_model(const ModelValidation& validation);
 
 /// Power over a whole flight (Eqs. 2-4), with the flights it was made from.
 struct MechanicalModel {
@@ -139,12 +151,16 @@ struct MechanicalModel {
     std::vector<FlightContribution> flights;
     std::optional<PhysicalModel> physical = {};      ///< power by motion; absent unless fitted
     std::optional<ModelValidation> validation = {};  ///< absent in files of fit, and of earlier versions
+    bool is_rotorcraft = false;                      ///< all of its flights are; not known of files of fourier curves
     std::optional<double> pack_voltage_v = {};       ///< highest of the flights' packs; absent if none was measured
 };
 
-/// The model with the power that missions use: each phase's mean power, of equally weighted flights, if its validation
-/// does not prefer the curve.
-MechanicalModel with_default_power(MechanicalModel model);
+/// The name of what predicts all phases: "fourier", "constant_mean", or "by_phase" where they differ.
+std::string default_model(const MechanicalModel& model);
+
+/// The model with the power that predicts: a constant, the mean of equally weighted flights, in the phases whose
+/// decision is the mean.
+MechanicalModel with_decided_power(MechanicalModel model);
 
 /// The time scale of a phase with another duration than the model's.
 enum class PhaseTimeScaling {
@@ -158,6 +174,9 @@ FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTim
 /// fits/mechanical/NAME.toml (docs/formats.md). Reading throws InputError with its location for a missing, unknown or
 /// invalid key.
 MechanicalModel read_mechanical_model(const std::filesystem::path& path);
+/// The same with_decided_power. Throws InputError also for a curve whose mean is beyond twice the greatest mean power of
+/// its flights, or below 0 where theirs is not: the samples did not determine it.
+MechanicalModel read_predicting_model(const std::filesystem::path& path);
 std::string to_toml(const MechanicalModel& model);
 
 /// Number of evenly spread points that resolve the series over `duration_s`: 16 a period of its highest harmonic, and
@@ -171,10 +190,11 @@ std::vector<double> curve_w(const FourierModel& model, double duration_s, std::s
 /// curves are compared at equal parts of the phase, whatever the seconds.
 double rms_difference_w(const PhaseModel& a, const PhaseModel& b);
 
-/// Warnings for users, a line each: a phase whose curve falls below 0 W.
+/// Warnings for users, a line each: a phase that is predicted by a curve that falls below 0 W.
 std::vector<std::string> model_warnings(const MechanicalModel& model);
 
-/// Remarks on the fit, a line each: samples excluded, a frequency at a bound or not determined, reduced harmonics.
+/// Remarks on the fit, a line each: what predicts a phase and why, samples excluded, a frequency at a bound or not
+/// determined, reduced harmonics.
 std::vector<std::string> fit_notes(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -69,6 +70,13 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
 }
 
+PowerBasis read_power_basis(const TomlTable& table) {
+    const auto name = table.string("power");
+    if (name == to_string(PowerBasis::mean)) return PowerBasis::mean;
+    if (name == to_string(PowerBasis::curve)) return PowerBasis::curve;
+    throw InputError(table.where("power"), fmt::format("power = '{}', expected curve or mean", name));
+}
+
 void list_phase(TomlFields& fields, PhaseModel& phase) {
     const auto* table = fields.source();
     auto& fourier = phase.fourier;
@@ -92,6 +100,10 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
     if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
+    if (fields.has("power", !phase.power.reason.empty())) {
+        fields.name("power", phase.power.by, read_power_basis);
+        fields.text("power_reason", phase.power.reason);
+    }
     if (table != nullptr)  // keys of earlier versions, which changed no prediction
         for (const auto* key : {"airspeed", "airspeed_law", "airspeed_cubed_parts_m3_per_s3"}) table->has(key);
     if (phase.errors) fields.line("");
@@ -122,12 +134,11 @@ void list_score(TomlFields& fields, HeldOutScore& score) {
 }
 
 void list_validation(TomlFields& fields, ModelValidation& validation) {
-    auto name = std::string(default_model(validation));
-    fields.text("default_model", name);
-    validation.prefers_curve = name == default_model({.prefers_curve = true, .scores = {}});
-    if (name != default_model(validation))
+    const auto& name = validation.default_model;
+    fields.text("default_model", validation.default_model);
+    if (name != "fourier" && name != "constant_mean" && name != "by_phase")
         throw InputError(fields.source()->where("default_model"),
-                         fmt::format("default_model = '{}', expected fourier or constant_mean", name));
+                         fmt::format("default_model = '{}', expected fourier, constant_mean or by_phase", name));
     fields.tables("scores", validation.scores, list_score, "");
 }
 
@@ -213,7 +224,7 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.real("bin_s", model.bin_s, more_than(0.0));
     fields.count("samples", model.samples);
     fields.real("mean_airspeed_m_per_s", model.mean_airspeed_m_per_s, at_least(0.0));
-    fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, more_than(0.0));
+    fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, at_least(0.0));
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
     fields.optional_table("payload_kg", model.payload_kg, [&](TomlFields& payload, FlownRange& range) {
@@ -247,6 +258,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     fields.text("name", model.name);
     if (fields.has("description", true)) fields.text("description", model.description);
     if (fields.has("weighting", true)) fields.text("weighting", model.weighting);
+    if (fields.has("rotorcraft", model.is_rotorcraft)) fields.flag("rotorcraft", model.is_rotorcraft);
     fields.optional_real("pack_voltage_v", model.pack_voltage_v, more_than(0.0));
     for (const auto phase : flight::all_phases) {
         fields.line("");
@@ -255,8 +267,8 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     fields.tables("flights", model.flights, list_flight);
     if (model.validation)
         fields.line(
-            "\n# Errors of each model on hold-out flights. Missions use default_model where they\n"
-            "# state no airspeed");
+            "\n# Errors of each model on hold-out flights. Missions that state no airspeed use\n"
+            "# default_model, which is what `power` of the phases says");
     fields.optional_table("validation", model.validation, list_validation, TomlLayout::section);
     if (model.physical)
         fields.line("\n# Power from the motion through the air: power_w = sum of coefficient * value over the terms");
@@ -272,6 +284,35 @@ MechanicalModel read_mechanical_model(const std::filesystem::path& path) {
     TomlFields fields(root);
     list_model(fields, model);
     root.refuse_unknown_keys();
+    // Earlier versions decided on all phases together.
+    const bool is_decided =
+        std::ranges::any_of(model.phases.values, [](const auto& phase) { return !phase.power.reason.empty(); });
+    if (!is_decided && model.validation && model.validation->default_model == "constant_mean")
+        for (auto& phase : model.phases.values)
+            phase.power = {PowerBasis::mean, "leave-one-out did not prefer the curves"};
+    return model;
+}
+
+MechanicalModel read_predicting_model(const std::filesystem::path& path) {
+    constexpr double max_times = 2.0;
+    auto model = with_decided_power(read_mechanical_model(path));
+    for (const auto phase : flight::all_phases) {
+        double lowest_w = 0.0;
+        double highest_w = 0.0;
+        for (const auto& flight : model.flights)
+            if (const auto& part = flight.phases[phase]; part && part->mean_power_w) {
+                lowest_w = std::min(lowest_w, *part->mean_power_w);
+                highest_w = std::max(highest_w, *part->mean_power_w);
+            }
+        const auto& [fourier, duration_s] = std::tie(model.phases[phase].fourier, model.phases[phase].duration_s);
+        const double mean_w = energy_j(fourier, duration_s) / duration_s;
+        if (highest_w == lowest_w || (mean_w >= max_times * lowest_w && mean_w <= max_times * highest_w)) continue;
+        throw InputError({path.string()},
+                         fmt::format("[{}]: its curve has a mean of {:.4g} W, and its flights of {:.4g} to {:.4g} W: "
+                                     "their samples do not determine it",
+                                     to_string(phase), mean_w, lowest_w, highest_w),
+                         "fit it again, without --model-kind fourier: the mean power predicts then");
+    }
     return model;
 }
 

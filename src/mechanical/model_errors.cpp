@@ -64,7 +64,10 @@ flight::PerPhase<ErrorAnalysis> analyse_model(ModelFit& fit) {
     flight::PerPhase<ErrorAnalysis> analyses;
     for (const auto phase : flight::all_phases) {
         analyses[phase] = analyse_errors(fit.samples[phase], fit.fits[phase], fit.weights[phase]);
-        fit.model.phases[phase].errors = analyses[phase].errors;
+        const auto& [theta_rad, range, flights, rms_w, samples, r, freedom, rivals, clamped] = fit.fits[phase];
+        const auto size = coefficient_count(static_cast<int>(flights.front().fourier.cos_w.size()));
+        if (samples > flights.size() * static_cast<std::size_t>(size))  // else they determine no residual
+            fit.model.phases[phase].errors = analyses[phase].errors;
         fit.model.phases[phase].spread = compute_envelope(fit.fits[phase], fit.weights[phase]);
     }
     return analyses;

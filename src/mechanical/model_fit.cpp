@@ -8,6 +8,7 @@
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -44,7 +45,7 @@ void require_finite(flight::Phase phase, const FourierModel& model) {
 std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flights, flight::Phase phase) {
     std::vector<PhaseSamples> samples;
     for (const auto& flight : flights) {
-        if (!flight.phases[phase]) continue;
+        if (!flight.phases[phase] || flight.phases[phase]->tau.empty()) continue;
         samples.push_back(*flight.phases[phase]);
         samples.back().flight = flight.flight;
     }
@@ -79,12 +80,27 @@ void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& option
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options) {
     FittedPhase fitted;
-    fitted.fit = fit_phase(phase, flights, options.phases);
+    std::string reason;
+    const auto needed = min_samples(options.phases.order);
+    std::ranges::copy_if(flights, std::back_inserter(fitted.samples),
+                         [&](const auto& samples) { return samples.tau.size() >= needed; });
+    try {
+        if (fitted.samples.empty() && !flights.empty())
+            throw NoResultError(
+                fmt::format("a Fourier series of order {} needs {} samples of a flight", options.phases.order, needed));
+        fitted.fit = fit_phase(phase, fitted.samples, options.phases);
+    } catch (const NoResultError& error) {
+        if (flights.empty() || options.phases.order == 0) throw;
+        reason = error.what();
+        fitted.samples.assign(flights.begin(), flights.end());
+        fitted.fit = fit_phase(phase, flights, {.order = 0});
+    }
     fitted.weights = flight_weights(fitted.fit, options.weighting);
     fitted.model = average_phase(fitted.fit, fitted.weights);
-    for (const auto& samples : flights) fitted.model.edge_samples += samples.edge_samples;
+    if (!reason.empty()) fitted.model.power = {PowerBasis::mean, std::move(reason)};
+    for (const auto& samples : fitted.samples) fitted.model.edge_samples += samples.edge_samples;
     require_finite(phase, fitted.model.fourier);
-    fitted.model.level_spread = estimate_variance_components(fitted.model, flights);
+    fitted.model.level_spread = estimate_variance_components(fitted.model, fitted.samples);
     return fitted;
 }
 
@@ -99,17 +115,17 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     for (const auto& flight : flights) model.pack_voltage_v = std::max(model.pack_voltage_v, flight.pack_voltage_v);
 
     for (const auto phase : flight::all_phases) {
-        parts.samples[phase] = samples_of_phase(flights, phase);
-        auto fitted = fit_phase_model(phase, parts.samples[phase], options);
+        auto fitted = fit_phase_model(phase, samples_of_phase(flights, phase), options);
         model.phases[phase] = fitted.model;
         std::size_t i = 0;
-        for (std::size_t owner = 0; owner < flights.size(); ++owner) {
-            if (!flights[owner].phases[phase]) continue;
+        for (auto& owner : model.flights) {
+            if (i == fitted.samples.size() || fitted.samples[i].flight != owner.flight) continue;
             const auto& curve = fitted.fit.flights[i];
-            model.flights[owner].phases[phase] = PhaseContribution{
-                fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples, mean_power_w(parts.samples[phase][i])};
+            owner.phases[phase] = PhaseContribution{fitted.weights[i], curve.duration_s, curve.rms_w, curve.samples,
+                                                    mean_power_w(fitted.samples[i])};
             ++i;
         }
+        parts.samples[phase] = std::move(fitted.samples);
         parts.fits[phase] = std::move(fitted.fit);
         parts.weights[phase] = std::move(fitted.weights);
     }

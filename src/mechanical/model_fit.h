@@ -21,10 +21,13 @@ struct ModelFitOptions {
 struct FittedPhase {
     PhaseModel model;
     PhaseFit fit;
-    std::vector<double> weights;  ///< of fit.flights
+    std::vector<double> weights;        ///< of fit.flights
+    std::vector<PhaseSamples> samples;  ///< of fit.flights
 };
 
-/// Fits and averages one phase (Eqs. 1, 5-7), with its spread. Throws what fit_phase throws.
+/// Fits and averages one phase (Eqs. 1, 5-7) of the flights with min_samples or more, with its spread. Where the samples
+/// determine no series, the phase has the mean power of all flights (PhaseModel::power, with the reason). Throws
+/// NoResultError for no flights, or power that overflows.
 FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> flights,
                             const ModelFitOptions& options = {});
 
@@ -44,9 +47,8 @@ std::vector<PhaseSamples> samples_of_phase(std::span<const FlightSamples> flight
 void cache_scans(std::span<FlightSamples> flights, const ModelFitOptions& options);
 
 /// The mechanical power of a flight from several flights (Eqs. 1-7): each phase is fitted over the flights that have it
-/// and averaged with their weights. A phase's rms_w is that of the samples about their own flights' curves. Throws
-/// NoResultError naming a phase that no flight has, or a flight with too few samples in a phase (min_samples),
-/// UsageError for a flight given twice, and as fit_phase.
+/// and averaged with their weights (fit_phase_model). A phase's rms_w is that of the samples about their own flights'
+/// curves. Throws NoResultError naming a phase that no flight has, and UsageError for a flight given twice.
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options = {});
 
 /// The series of the model's order and frequency which is nearest (least squares) to `power_w` at the parts `tau`

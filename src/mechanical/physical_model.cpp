@@ -42,16 +42,16 @@ double induced_power_w(const AircraftLoad& load, double airspeed_m_per_s) {
 TermValues term_values(const FlightState& motion, const AircraftLoad& load) {
     const double airspeed = motion.airspeed_m_per_s;
     const double load_factor = motion.load_factor;
-    if (!(airspeed > 0.0) || !std::isfinite(airspeed)) {
-        throw std::invalid_argument(fmt::format("an airspeed of {} m/s: expected more than 0", airspeed));
+    if (!(airspeed >= 0.0) || !std::isfinite(airspeed)) {
+        throw std::invalid_argument(fmt::format("an airspeed of {} m/s: expected 0 or more", airspeed));
     }
     if (!(load_factor >= 0.0) || !std::isfinite(load_factor)) {
         throw std::invalid_argument(fmt::format("a load factor of {}: expected 0 or more", load_factor));
     }
     TermValues values;
     values[PowerTerm::drag] = airspeed * airspeed * airspeed;
-    values[PowerTerm::induced] = 1.0 / airspeed;
-    values[PowerTerm::turn] = (load_factor * load_factor - 1.0) / airspeed;
+    values[PowerTerm::induced] = 1.0 / std::max(airspeed, 1.0);
+    values[PowerTerm::turn] = (load_factor * load_factor - 1.0) * values[PowerTerm::induced];
     values[PowerTerm::climb] = motion.climb_m_per_s;
     values[PowerTerm::descent] = std::min(motion.climb_m_per_s, 0.0);
     values[PowerTerm::constant] = 1.0;

@@ -66,12 +66,15 @@ struct MotionAhead {
     double duration_s = 0.0;
 };
 
+/// The power of a hover grows with this power of the mass, by momentum theory.
+inline constexpr double hover_exponent = 1.5;
+
 /// Induced power [W] of level flight by momentum theory: weight times v, with v sqrt(V^2 + v^2) = weight / (2 density
 /// area) (Glauert) at sea level. 0 without rotors.
 double induced_power_w(const AircraftLoad& load, double airspeed_m_per_s);
 
-/// The terms' values. Throws std::invalid_argument unless the airspeed is positive and the
-/// load factor at least 0.
+/// The terms' values. Below 1 m/s no wing carries: induced drag and that of turns are those of 1 m/s. Throws
+/// std::invalid_argument unless airspeed and load factor are at least 0.
 TermValues term_values(const FlightState& motion, const AircraftLoad& load = {});
 
 struct FlownRange {

@@ -133,6 +133,13 @@ FlightPrediction predict_by_motion(const MeasuredFlight& flight, const Predicted
     return prediction;
 }
 
+double square_error_w2(const PhaseSamples& samples, const FourierModel& predicted) {
+    double sum_w2 = 0.0;
+    for (std::size_t i = 0; i < samples.tau.size(); ++i)
+        sum_w2 += std::pow(samples.power_w[i] - power_w(predicted, samples.tau[i] * samples.duration_s), 2);
+    return sum_w2 / static_cast<double>(samples.tau.size());
+}
+
 std::vector<FlightPrediction> predict_part(const MeasuredFlight& flight, const PredictedPart& part,
                                            const Others& others) {
     const auto& correlations = others.correlations;
@@ -141,9 +148,15 @@ std::vector<FlightPrediction> predict_part(const MeasuredFlight& flight, const P
     for (const auto phase : flight::all_phases) {
         const double ahead_s = part.ahead_s[phase];
         if (!(ahead_s > 0.0)) continue;
-        by_curve.phases[phase] =
-            predict_remaining_before_flight(*others.forecasts[phase], part.flown_s[phase], ahead_s);
-        by_mean.phases[phase] = energy_of(constant_mean(others.phases[phase]), ahead_s);
+        const auto& forecast = *others.forecasts[phase];
+        by_curve.phases[phase] = predict_remaining_before_flight(forecast, part.flown_s[phase], ahead_s);
+        const auto power = constant_mean(others.phases[phase]);
+        by_mean.phases[phase] = energy_of(power, ahead_s);
+        if (flight.flown) continue;
+        const auto& samples = *flight.samples.phases[phase];
+        const auto curve = time_scaled_model(forecast.model, samples.duration_s, PhaseTimeScaling::scaled);
+        by_curve.square_error_w2[phase] = square_error_w2(samples, curve);
+        by_mean.square_error_w2[phase] = square_error_w2(samples, {1.0, power.mean_w, {}, {}});
     }
     for (auto* prediction : {&by_curve, &by_mean}) prediction->total = sum_of(prediction->phases, correlations);
     std::vector predictions{by_curve, by_mean};

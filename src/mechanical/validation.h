@@ -17,6 +17,8 @@ struct FlightPrediction {
     std::string model;
     flight::PerPhase<std::optional<EnergyEstimate>> phases;  ///< with what was flown of them
     std::optional<EnergyEstimate> total = {};                ///< none: their sum, as if they were independent
+    /// Of "fourier" and "constant_mean" for whole flights: mean square of the samples' deviations from the prediction.
+    flight::PerPhase<std::optional<double>> square_error_w2 = {};
 };
 
 struct ValidatedFlight {
@@ -70,20 +72,25 @@ std::optional<PredictedEnergy> predicted_energy(const ValidatedFlight& flight, c
 /// the flights that it predicts as a whole. Returns the reason; empty: not removed.
 std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 
-/// Missions use the curve if its mean error is less than the mean power's by this fraction of it, and its error is less
-/// in more than half of the flights.
-inline constexpr double min_gain_of_curve = 0.05;
+/// Decides what predicts each phase of a fitted model (PhaseModel::power), the only place that does. The curve does
+/// where three flights or more have samples all over the phase, and on flights left out its energies are as near as
+/// those of the mean power (or 5 % farther, which a few flights cannot tell apart) and the power over time is nearer.
+/// Else the mean power does, and the drift is about it. `flights` are the model's, in its order; `validated` some of
+/// them, left out.
+void decide_power(MechanicalModel& model, std::span<const MeasuredFlight> flights,
+                  std::span<const ValidatedFlight> validated);
 
 /// The scores of the models that missions can use, each over the flights that it predicts as a whole, without those
-/// that remove_rejected removes. std::nullopt where curve or mean power has none.
-std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights);
+/// that remove_rejected removes; of a decided model whose phases differ also "by_phase". std::nullopt where curve or
+/// mean power has none.
+std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights, const MechanicalModel& model);
 
 /// Returns the flights by which a model is validated: of more than max_validation_folds that many, evenly from all.
 std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights);
 
-/// Adds the validation to a fitted model, and the physical model if it is not rejected. Of more than
-/// max_validation_folds flights that many are validated, evenly from all. Adds nothing for fewer than 2 flights or
-/// folds that cannot be fitted.
+/// Decides what predicts the phases of a fitted model, and adds its validation, and the physical model if it has none
+/// and that is not rejected. Of more than max_validation_folds flights that many are validated, evenly from all. A
+/// single flight, or folds that cannot be fitted, have no validation.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 

@@ -52,6 +52,7 @@ std::string describe(const mechanical::HeldOutScore& power_model) {
     const auto& model = power_model.model;
     const auto* used = model == "physical"        ? "cruise power by the physical model"
                        : model == "constant_mean" ? "power by each phase's mean"
+                       : model == "by_phase"      ? "power by each phase's curve or mean"
                                                   : "power by each phase's curve";
     const auto* known = model == "physical" ? ", their airspeed and climb known" : "";
     return fmt::format("{}: {:.1f} % off on {} flights left out of the fit{}", used,

@@ -78,7 +78,6 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
     BatchContent content;
     content.fit = batch::read_batch_fit(out);
     const auto fit = content.fit.value_or(batch::BatchFit{});
-    const auto needed = mechanical::min_samples(fit.options.phases.order);
     flight::LoadOptions load;
     load.excluded = fit.excluded;
     load.keep = fit.keep;
@@ -91,7 +90,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         if (!damage.empty()) content.damaged.push_back(record.flight + ": " + damage);
         if (record.accepted) {
             flight.aircraft = aircraft_of(record);
-            auto selection = batch::select_for_fit(record, needed, load);
+            auto selection = batch::select_for_fit(record, load);
             const auto* copy = batch::original_of(record.flight, fit.copies);
             if (copy != nullptr) {
                 selection.flights.clear();
@@ -114,7 +113,7 @@ std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& c
     auto flights = content.measured;
     for (const auto& logged : content.flights) {
         if (!logged.rejected.empty()) continue;
-        for (auto& measured : mechanical::extract_flights(logged.data, logged.phases, 1).flights) {
+        for (auto& measured : mechanical::extract_flights(logged.data, logged.phases).flights) {
             const auto same = std::ranges::find_if(
                 flights, [&](const auto& flight) { return flight.samples.flight == measured.samples.flight; });
             if (same != flights.end()) same->power = std::move(measured.power);

@@ -25,7 +25,7 @@ BatchFit some_fit() {
     auto fit = fit_flights(samples, options);
     fit.excluded = {"other"};
     fit.keep = {"doubtful"};
-    fit.model.validation = mechanical::ModelValidation{true, {{"fourier", 3, 2.5}}};
+    fit.model.validation = mechanical::ModelValidation{"fourier", {{"fourier", 3, 2.5}}};
     return fit;
 }
 
@@ -48,7 +48,7 @@ TEST(BatchFit, IsReadBackAsItWasWritten) {
     // model.toml is the model alone.
     const auto plain = mechanical::read_mechanical_model(out / model_name);
     EXPECT_FALSE(plain.phases[flight::Phase::cruise].errors);
-    EXPECT_TRUE(plain.validation && plain.validation->prefers_curve);
+    EXPECT_TRUE(plain.validation && plain.validation->default_model == "fourier");
 }
 
 TEST(BatchFit, IsNoneWithoutAModelAndRefusesWhatIsDamaged) {

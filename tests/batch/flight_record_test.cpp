@@ -139,7 +139,7 @@ TEST(FlightRecord, HoldsWhatAFitTakes) {
     EXPECT_TRUE(record.accepted);
     EXPECT_EQ(record.flight, "opterra_synthetic_01");
     EXPECT_EQ(record.aircraft_id, "7");
-    const auto measured = mechanical::extract_flights(loaded, 8);
+    const auto measured = mechanical::extract_flights(loaded);
     const auto back = record_from_json(to_json_text(record)).value().measured;
     ASSERT_EQ(back.flights.size(), 1U);
     EXPECT_EQ(back.sorties, measured.sorties);

@@ -40,7 +40,7 @@ MergePlan merge(const Paths& batches, const std::filesystem::path& out, bool pru
     auto plan = plan_merge(batches, out, prune);
     refuse_foreign_files(plan.folder, out);
     prepare_folder(plan.folder, out);
-    auto flights = merge_flights(plan, out, 8, [](std::size_t, std::size_t, const BatchFlight&) {});
+    auto flights = merge_flights(plan, out, [](std::size_t, std::size_t, const BatchFlight&) {});
     exclude_duplicates(flights, find_duplicates(flights));
     write_file_atomically(out / catalogue_name, catalogue_csv(flights));
     return plan;
@@ -119,7 +119,7 @@ TEST(Merge, AgainDoesNothingAndABatchGoesOnFromIt) {
     const auto series = out / "flights" / "opterra_synthetic_01.series.csv";
     EXPECT_EQ(std::filesystem::hard_link_count(series), 2U);
     const auto first = test::contents(out);
-    const auto flights = merge_flights(plan_merge({scratch / "one", scratch / "other"}, out, false), out, 8,
+    const auto flights = merge_flights(plan_merge({scratch / "one", scratch / "other"}, out, false), out,
                                        [](std::size_t, std::size_t, const BatchFlight&) {});
     EXPECT_TRUE(flights[0].was_up_to_date);
     EXPECT_THAT(differing(test::contents(out), first), IsEmpty());

@@ -16,8 +16,6 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::size_t needed = 8;
-
 /// A sample a second from 0 to 300 s; the power tells the time.
 flight::FlightSeries series_of_300_s() {
     test::SampleColumns series;
@@ -53,7 +51,7 @@ Selection select(const std::vector<flight::Sortie>& sorties) {
     flight::FlightPhases phases;
     phases.sorties = sorties;
     for (std::size_t s = 0; s < sorties.size(); ++s) phases.sorties[s].number = s + 1;
-    auto measured = extract_flights(select_tracks(series_of_300_s()), phases, needed);
+    auto measured = extract_flights(select_tracks(series_of_300_s()), phases);
     Selection selection{{}, std::move(measured.exclusions)};
     for (auto& flight : measured.flights) selection.flights.push_back(std::move(flight.samples));
     return selection;
@@ -103,7 +101,7 @@ TEST(MeasuredFlights, EndWithASampleAtTheirVeryEnd) {
     std::ranges::sort(columns.time_s);
     flight::FlightPhases phases;
     phases.sorties.emplace_back().phases = {span(flight::Phase::takeoff, 64.86, 92.7)};
-    const auto flights = extract_flights(select_tracks(test::series_of(columns)), phases, needed).flights;
+    const auto flights = extract_flights(select_tracks(test::series_of(columns)), phases).flights;
     EXPECT_EQ(flights.at(0).samples.phases[flight::Phase::takeoff].value().tau.back(), 1.0);
 }
 
@@ -143,14 +141,16 @@ TEST(MeasuredFlights, ExcludeWhatBeginsOrEndsInALongGap) {
     EXPECT_TRUE(selection.flights[0].phases[flight::Phase::takeoff].has_value());
 }
 
-TEST(MeasuredFlights, ExcludeWhatHasTooFew) {
+TEST(MeasuredFlights, ExcludeWhatHasNoSample) {
     flight::Sortie sortie;
-    sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 23)};
+    sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 23),
+                     span(flight::Phase::landing, 23.3, 23.6)};
     const auto selection = select({sortie});
-    EXPECT_EQ(selection.flights.at(0).phases[flight::Phase::takeoff]->tau.size(), needed);
+    EXPECT_EQ(selection.flights.at(0).phases[flight::Phase::takeoff]->tau.size(), 8U);
+    EXPECT_EQ(selection.flights.at(0).phases[flight::Phase::cruise]->tau.size(), 7U) << "enough for a mean power";
     ASSERT_EQ(selection.exclusions.size(), 1U);
-    EXPECT_EQ(selection.exclusions[0].phase, flight::Phase::cruise);
-    EXPECT_EQ(selection.exclusions[0].reason, "7 samples, 8 are needed");
+    EXPECT_EQ(selection.exclusions[0].phase, flight::Phase::landing);
+    EXPECT_EQ(selection.exclusions[0].reason, "it has no sample of the power");
 }
 
 TEST(MeasuredFlights, AreNoneWhereNothingIsLeft) {

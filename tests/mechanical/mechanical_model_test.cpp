@@ -106,9 +106,9 @@ TEST(PhaseCurve, ResolvesTheFastestHarmonic) {
 }
 
 /// Take-offs of three flights, of which one has no weight, and a cruise without flights.
-MechanicalModel validated_model(bool prefers_curve) {
+MechanicalModel decided_model(PowerBasis basis) {
     auto model = test::published_model();
-    model.validation = ModelValidation{prefers_curve, {}};
+    for (auto& phase : model.phases.values) phase.power = {basis, "made up"};
     model.flights = {{"a", {}}, {"b", {}}, {"c", {}}};
     const std::vector<PhaseContribution> parts{
         {0.75, 28.0, 0.1, 20, 30.0}, {0.25, 29.0, 0.1, 20, 26.0}, {0.0, 27.0, 0.1, 20, 90.0}};
@@ -117,8 +117,8 @@ MechanicalModel validated_model(bool prefers_curve) {
     return model;
 }
 
-TEST(WithDefaultPower, IsEachPhasesMeanPowerUnlessTheCurveIsPreferred) {
-    const auto model = with_default_power(validated_model(false));
+TEST(WithDecidedPower, IsTheMeanPowerOfPhasesWithoutACurve) {
+    const auto model = with_decided_power(decided_model(PowerBasis::mean));
     const auto& takeoff = model.phases[flight::Phase::takeoff];
     EXPECT_DOUBLE_EQ(takeoff.fourier.a0_w, 28.0);
     EXPECT_TRUE(takeoff.fourier.cos_w.empty() && takeoff.fourier.sin_w.empty());
@@ -129,8 +129,9 @@ TEST(WithDefaultPower, IsEachPhasesMeanPowerUnlessTheCurveIsPreferred) {
     const auto published = test::published_model();
     EXPECT_EQ(model.phases[flight::Phase::cruise].fourier.cos_w, published.phases[flight::Phase::cruise].fourier.cos_w)
         << "of no flight is the mean power known";
-    EXPECT_EQ(to_toml(with_default_power(validated_model(true))), to_toml(validated_model(true)));
-    EXPECT_EQ(to_toml(with_default_power(published)), to_toml(published)) << "without a validation";
+    const auto by_curve = decided_model(PowerBasis::curve);
+    EXPECT_EQ(to_toml(with_decided_power(by_curve)), to_toml(by_curve));
+    EXPECT_EQ(to_toml(with_decided_power(published)), to_toml(published)) << "without a decision";
 }
 
 using testing::ElementsAre;

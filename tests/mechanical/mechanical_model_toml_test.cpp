@@ -1,10 +1,12 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "helpers/made_up_flights.h"
+#include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 #include "mechanical/mechanical_model.h"
 
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -115,12 +117,16 @@ TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
 
 TEST(MechanicalModelToml, ReadsBackItsValidation) {
     auto model = made_up_model();
-    for (const bool prefers_curve : {true, false}) {
-        model.validation = {prefers_curve, {{"constant_mean", 4, 55.9 / 3.0}, {"physical", 3, 2.7}}};
+    for (const std::string name : {"fourier", "constant_mean", "by_phase"}) {
+        model.phases[flight::Phase::landing].power = {PowerBasis::mean, "of one flight"};
+        model.validation = {name, {{"constant_mean", 4, 55.9 / 3.0}, {"physical", 3, 2.7}}};
         const auto text = to_toml(model);
         const auto again = read_mechanical_model(written(text));
         ASSERT_TRUE(again.validation);
-        EXPECT_EQ(again.validation->prefers_curve, prefers_curve);
+        EXPECT_EQ(again.validation->default_model, name);
+        EXPECT_EQ(again.phases[flight::Phase::landing].power.by, PowerBasis::mean);
+        EXPECT_EQ(again.phases[flight::Phase::landing].power.reason, "of one flight");
+        EXPECT_EQ(again.phases[flight::Phase::cruise].power.by, PowerBasis::curve);
         ASSERT_EQ(again.validation->scores.size(), 2U);
         EXPECT_EQ(again.validation->scores[0].mean_absolute_error_percent, 55.9 / 3.0);
         EXPECT_EQ(again.validation->scores[1].model, "physical");
@@ -129,7 +135,31 @@ TEST(MechanicalModelToml, ReadsBackItsValidation) {
     }
     EXPECT_FALSE(read_mechanical_model(written(sound_text)).validation) << "files of fit and of earlier versions";
     const auto unknown = refusal_of("[[flights]]", "[validation]\ndefault_model = \"best\"\n[[flights]]");
-    EXPECT_THAT(unknown.what(), HasSubstr("default_model = 'best', expected fourier or constant_mean"));
+    EXPECT_THAT(unknown.what(), HasSubstr("default_model = 'best', expected fourier, constant_mean or by_phase"));
+}
+
+TEST(MechanicalModelToml, ReadsTheDecisionOfEarlierVersionsOnAllPhasesTogether) {
+    auto model = made_up_model();
+    for (const auto& [name, basis] : {std::pair{"fourier", PowerBasis::curve}, {"constant_mean", PowerBasis::mean}}) {
+        model.validation = {name, {}};
+        const auto again = read_mechanical_model(written(to_toml(model)));
+        for (const auto phase : flight::all_phases) EXPECT_EQ(again.phases[phase].power.by, basis) << name;
+    }
+}
+
+TEST(MechanicalModelToml, PredictsByNoCurveThatItsFlightsDoNotDetermine) {
+    auto model = made_up_model();
+    const auto read_with = [&](double mean_power_w) {
+        for (auto& flight : model.flights)
+            for (auto& part : flight.phases.values)
+                if (part) part->mean_power_w = mean_power_w;
+        return test::rejected([&] { read_predicting_model(written(to_toml(model))); });
+    };
+    const double cruise_w = model.phases[flight::Phase::cruise].fourier.a0_w;
+    model.phases[flight::Phase::cruise].fourier = {0.01, 100.0 * cruise_w, {}, {}};
+    EXPECT_THAT(read_with(cruise_w), HasSubstr("[cruise]: its curve has a mean of"));
+    model.phases[flight::Phase::cruise].power = {PowerBasis::mean, "made up"};
+    EXPECT_THAT(read_with(cruise_w), testing::Not(HasSubstr("[cruise]")));
 }
 
 TEST(MechanicalModelToml, ReadsASoundFile) {

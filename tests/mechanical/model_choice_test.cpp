@@ -1,4 +1,4 @@
-// Which of the models a mission uses: remove_rejected, validation_of and add_best_power.
+// Which of the models a mission uses: remove_rejected, decide_power, validation_of and add_best_power.
 
 #include "helpers/generated_flights.h"
 #include "helpers/generated_motion.h"
@@ -64,33 +64,86 @@ TEST(RemoveRejected, KeepsBaselines) {
     EXPECT_THAT(remove_rejected(flights), IsEmpty());
 }
 
-TEST(ValidationOf, PrefersTheCurveOnlyWhereItIsBetterByFivePercentAndInMostFlights) {
-    const auto prefers_curve = [](const std::vector<std::pair<double, double>>& mean_and_curve_wh) {
-        std::vector<ValidatedFlight> flights;
-        for (const auto& [mean_wh, curve_wh] : mean_and_curve_wh)
-            flights.push_back(flight_of({{"fourier", curve_wh}, {"constant_mean", mean_wh}}));
-        const auto validation = validation_of(flights).value();
-        EXPECT_EQ(default_model(validation), validation.prefers_curve ? "fourier" : "constant_mean");
-        return validation.prefers_curve;
+/// A model of cruises alone, of flights that are sampled all over, and their validation.
+struct Decided {
+    MechanicalModel model;
+    std::vector<MeasuredFlight> flights;
+    std::vector<ValidatedFlight> validated;
+};
+
+Decided cruises(std::size_t count, double mean_wh, double curve_wh, double mean_w2, double curve_w2) {
+    Decided of;
+    for (std::size_t i = 0; i < count; ++i) {
+        auto& flight = of.flights.emplace_back();
+        flight.samples.phases[Phase::cruise] = PhaseSamples{"f", 100.0, {0.1, 0.3, 0.5, 0.7, 0.9}, {20, 22, 24, 22, 20}};
+        of.model.flights.emplace_back().phases[Phase::cruise] = PhaseContribution{1.0 / 3.0, 100.0, 0.1, 5, 21.6};
+        of.validated.push_back(flight_of({{"fourier", curve_wh}, {"constant_mean", mean_wh}}));
+        of.validated.back().predictions[0].square_error_w2[Phase::cruise] = curve_w2;
+        of.validated.back().predictions[1].square_error_w2[Phase::cruise] = mean_w2;
+    }
+    of.model.phases[Phase::cruise].duration_s = 100.0;
+    return of;
+}
+
+PowerDecision decision_of(Decided of) {
+    decide_power(of.model, of.flights, of.validated);
+    return of.model.phases[Phase::cruise].power;
+}
+
+TEST(DecidePower, TakesTheCurveOnlyWhereItPredictsNoWorse) {
+    const auto basis = [](double mean_wh, double curve_wh, double mean_w2, double curve_w2) {
+        return decision_of(cruises(3, mean_wh, curve_wh, mean_w2, curve_w2)).by;
     };
-    EXPECT_TRUE(prefers_curve({{10.0, 9.4}, {10.0, 9.4}}));
-    EXPECT_FALSE(prefers_curve({{10.0, 9.6}, {10.0, 9.6}}));
-    EXPECT_TRUE(prefers_curve({{10.0, 5.0}, {10.0, 9.0}, {10.0, 10.5}}));
-    EXPECT_FALSE(prefers_curve({{10.0, 1.0}, {10.0, 10.5}, {10.0, 10.5}}));
-    EXPECT_FALSE(prefers_curve({{10.0, 1.0}, {10.0, 10.5}})) << "half is not most";
+    EXPECT_EQ(basis(10.0, 10.0, 4.0, 1.0), PowerBasis::curve);
+    EXPECT_EQ(basis(10.0, 10.4, 4.0, 1.0), PowerBasis::curve) << "three flights do not tell 4 % apart";
+    EXPECT_EQ(basis(10.0, 10.6, 4.0, 1.0), PowerBasis::mean);
+    EXPECT_EQ(basis(10.0, 10.0, 4.0, 4.1), PowerBasis::mean);
+    EXPECT_EQ(basis(10.0, 10.0, 4.0, 4.0), PowerBasis::mean) << "the simpler one of equals";
+    EXPECT_THAT(decision_of(cruises(3, 10.0, 806.0, 4.0, 1e4)).reason,
+                StartsWith("on 3 flights left out the curve is 806 Wh off and 100 W over time, the mean power 10 Wh"));
+}
+
+TEST(DecidePower, TakesTheMeanOfFewFlights) {
+    for (const std::size_t count : {1U, 2U})
+        EXPECT_EQ(decision_of(cruises(count, 10.0, 1.0, 4.0, 1.0)).by, PowerBasis::mean) << count;
+    EXPECT_THAT(decision_of(cruises(1, 10.0, 1.0, 4.0, 1.0)).reason, testing::HasSubstr("no variability"));
+    EXPECT_EQ(decision_of(cruises(3, 10.0, 1.0, 4.0, 1.0)).by, PowerBasis::curve);
+}
+
+TEST(DecidePower, TakesTheMeanWhereSamplesDoNotCoverThePhase) {
+    auto with_gap = cruises(3, 10.0, 1.0, 4.0, 1.0);
+    with_gap.flights[1].samples.phases[Phase::cruise]->tau = {0.1, 0.2, 0.3, 0.56, 0.9};
+    EXPECT_EQ(decision_of(with_gap).reason, "of 3 flights, 2 with samples all over the phase: a curve needs 3");
+    with_gap.flights[1].samples.phases[Phase::cruise]->tau = {0.1, 0.3, 0.5, 0.74, 0.76};
+    EXPECT_EQ(decision_of(with_gap).by, PowerBasis::curve);
+    with_gap.flights[1].samples.phases[Phase::cruise]->tau = {0.1, 0.3, 0.5, 0.73, 0.74};
+    EXPECT_EQ(decision_of(with_gap).by, PowerBasis::mean) << "nothing near the end";
+}
+
+TEST(ValidationOf, HasTheScoreOfPhasesThatDiffer) {
+    auto flight = flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}});
+    flight.measured_wh[Phase::landing] = 100.0;
+    for (auto& prediction : flight.predictions)
+        prediction.phases[Phase::landing] = EnergyEstimate{prediction.model == "fourier" ? 906.0 : 102.0};
+    MechanicalModel model;
+    model.phases[Phase::landing].power.by = PowerBasis::mean;
+    const auto validation = validation_of({flight}, model).value();
+    EXPECT_EQ(validation.default_model, "by_phase");
+    EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "by_phase"));
+    EXPECT_NEAR(validation.scores[2].mean_absolute_error_percent, 2.5, 1e-12) << "3 Wh of the curve, 2 of the mean";
 }
 
 TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
     const auto validation =
         validation_of({flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}, {"in_flight", 1.0}, {"physical", 2.0}}),
-                       flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})})
+                       flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})}, {})
             .value();
     EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "physical"));
     EXPECT_EQ(validation.scores[0].flights, 2U);
     EXPECT_NEAR(validation.scores[0].mean_absolute_error_percent, 5.0, 1e-12);
     EXPECT_EQ(validation.scores[2].flights, 1U);
     EXPECT_NEAR(validation.scores[2].mean_absolute_error_percent, 2.0, 1e-12);
-    EXPECT_FALSE(validation_of({flight_of({{"fourier", 3.0}})})) << "nothing to compare with";
+    EXPECT_FALSE(validation_of({flight_of({{"fourier", 3.0}})}, {})) << "nothing to compare with";
 }
 
 /// Constant power, in fits that take no time.
@@ -111,21 +164,28 @@ ModelFitOptions of_order(int order) {
     return options;
 }
 
+MechanicalModel model_of(const std::vector<MeasuredFlight>& flights) {
+    std::vector<FlightSamples> samples;
+    for (const auto& flight : flights) samples.push_back(flight.samples);
+    return fit_model(samples, of_order(0)).model;
+}
+
 TEST(AddBestPower, ValidatesAtMostFortyFlights) {
     for (const auto& [given, used] : {std::pair(40U, 40U), std::pair(95U, 40U), std::pair(2U, 2U)}) {
-        MechanicalModel model;
+        auto model = model_of(steady_flights(given));
         add_best_power(model, steady_flights(given), of_order(0));
         ASSERT_TRUE(model.validation);
         EXPECT_EQ(model.validation->scores.front().flights, used);
-        EXPECT_FALSE(model.validation->prefers_curve) << "they are the same";
+        EXPECT_EQ(model.validation->default_model, "constant_mean") << "they are the same";
         EXPECT_FALSE(model.physical) << "no airspeed was measured";
     }
 }
 
-TEST(AddBestPower, AddsNothingToOneFlight) {
-    MechanicalModel model;
+TEST(AddBestPower, HasTheMeanPowerOfOneFlight) {
+    auto model = model_of(steady_flights(1));
     add_best_power(model, steady_flights(1), of_order(0));
     EXPECT_FALSE(model.validation);
+    EXPECT_EQ(default_model(model), "constant_mean");
 }
 
 /// Flights that fly as their motion: energies and samples are its bins'.
@@ -158,7 +218,7 @@ std::vector<MeasuredFlight> flights_of(const std::vector<BinnedFlight>& motions)
 
 TEST(AddBestPower, AddsThePhysicalModelWherePowerFollowsTheMotion) {
     const auto flights = flights_of(test::made_up_motions(6, 40, {}, 3));
-    MechanicalModel model;
+    auto model = model_of(flights);
     add_best_power(model, flights, of_order(0));
     ASSERT_TRUE(model.validation);
     EXPECT_THAT(models_of(*model.validation), testing::Contains("physical"));
@@ -179,7 +239,7 @@ TEST(AddBestPower, LeavesOutAPhysicalModelThatPredictsWorseThanTheMeanPower) {
         }
         power_w += 0.01;
     }
-    MechanicalModel model;
+    auto model = model_of(flights);
     add_best_power(model, flights, of_order(0));
     ASSERT_TRUE(model.validation);
     EXPECT_THAT(models_of(*model.validation), ElementsAre("constant_mean", "fourier"));

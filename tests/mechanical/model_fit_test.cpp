@@ -159,7 +159,31 @@ TEST(ModelFit, RefusesWhatHasNoAnswer) {
     EXPECT_THAT(message_of<UsageError>(twice), HasSubstr("'flight1' is given twice"));
     flights[0].phases[flight::Phase::takeoff]->tau.resize(5);
     flights[0].phases[flight::Phase::takeoff]->power_w.resize(5);
-    EXPECT_THAT(message_of<NoResultError>(flights), HasSubstr("flight 'flight1' has 5 samples in takeoff"));
+    const auto of_longer = fit_model(flights).model;
+    EXPECT_EQ(of_longer.phases[flight::Phase::takeoff].flights, 1U) << "five samples determine no series of order 3";
+    EXPECT_FALSE(of_longer.flights[0].phases[flight::Phase::takeoff]);
+    EXPECT_TRUE(of_longer.flights[1].phases[flight::Phase::takeoff]);
+}
+
+TEST(ModelFit, HasTheMeanPowerWhereNoFlightDeterminesACurve) {
+    auto flights = made_up_flights(2, 0.2, 7);
+    for (auto& flight : flights) {
+        auto& cruise = *flight.phases[flight::Phase::cruise];
+        cruise.tau = {0.5};
+        cruise.power_w = {40.0};
+    }
+    auto fit = fit_model(flights);
+    const auto& cruise = fit.model.phases[flight::Phase::cruise];
+    EXPECT_EQ(cruise.power.by, PowerBasis::mean);
+    EXPECT_EQ(cruise.power.reason, "a Fourier series of order 3 needs 8 samples of a flight");
+    EXPECT_DOUBLE_EQ(cruise.fourier.a0_w, 40.0);
+    EXPECT_EQ(cruise.flights, 2U);
+    analyse_model(fit);
+    EXPECT_FALSE(cruise.errors) << "one sample a flight has no residual";
+    EXPECT_TRUE(fit.model.phases[flight::Phase::landing].errors);
+    EXPECT_EQ(fit.model.phases[flight::Phase::landing].power.by, PowerBasis::curve);
+    const auto text = to_toml(fit.model);
+    EXPECT_THAT(text, testing::Not(HasSubstr("nan")));
 }
 
 }  // namespace

@@ -43,8 +43,15 @@ TEST(PhysicalModel, HasTheTermsOfPhysics) {
     EXPECT_DOUBLE_EQ(term_values({.airspeed_m_per_s = 20.0, .climb_m_per_s = 3.0})[PowerTerm::descent], 0.0);
 }
 
+TEST(PhysicalModel, HasAPowerInHover) {
+    const auto hover = term_values({.airspeed_m_per_s = 0.0}, {0.5, RotorLoading{2.0, 0.4}});
+    EXPECT_DOUBLE_EQ(hover[PowerTerm::drag], 0.0);
+    EXPECT_DOUBLE_EQ(hover[PowerTerm::induced], 1.0) << "of a wing at 1 m/s: it does not carry";
+    EXPECT_DOUBLE_EQ(hover[PowerTerm::hover], induced_power_w({0.5, RotorLoading{2.0, 0.4}}, 0.0));
+    EXPECT_DOUBLE_EQ(term_values({.airspeed_m_per_s = 1.0})[PowerTerm::induced], 1.0);
+}
+
 TEST(PhysicalModel, RefusesAMotionThatIsNone) {
-    EXPECT_THROW(term_values({.airspeed_m_per_s = 0.0}), std::invalid_argument);
     EXPECT_THROW(term_values({.airspeed_m_per_s = -1.0}), std::invalid_argument);
     EXPECT_THROW(term_values({.airspeed_m_per_s = std::nan("")}), std::invalid_argument);
     EXPECT_THROW(term_values({.airspeed_m_per_s = 10.0, .climb_m_per_s = 0.0, .load_factor = -1.0}),

@@ -139,7 +139,7 @@ TEST(RotorcraftModel, AMinuteOfARealFlightTellsItsPayload) {
     std::vector<MeasuredFlight> flights;
     for (const auto* number : {"10", "100", "101", "103", "104", "106", "107", "109"}) {
         const auto loaded = flight::load_flight(test::shared_dir() / "m100" / fmt::format("{}.csv", number), {});
-        auto measured = extract_flights(loaded, 8);
+        auto measured = extract_flights(loaded);
         ASSERT_EQ(measured.flights.size(), 1U) << number;
         auto& flight = flights.emplace_back(std::move(measured.flights.front()));
         flight.flown = progress_after_lift_off(loaded.series, loaded.phases.sorties.front(), 60.0);

@@ -38,7 +38,7 @@ Fields<FlightContribution> record_fields(const FlightContribution*) {
 }
 
 Fields<ModelValidation> record_fields(const ModelValidation*) {
-    return {field("default_model", default_model, "model of missions"),
+    return {field("default_model", &ModelValidation::default_model, "model of missions"),
             field("scores", &ModelValidation::scores, "hold-out errors")};
 }
 
@@ -59,6 +59,7 @@ Fields<PhaseOutput> record_fields(const PhaseOutput*) {
     using M = mechanical::PhaseModel;
     using F = decltype(M::fourier);
     using P = mechanical::MeanPower;
+    using D = mechanical::PowerDecision;
     const auto rms_w = [](const R& r) { return r.fitted->rms_w.value_or(0.0); };
     return list_fields<R>(
         field("duration_s", at(&R::fitted, &M::duration_s), "duration of the phase"),
@@ -71,6 +72,8 @@ Fields<PhaseOutput> record_fields(const PhaseOutput*) {
         field("flights", at(&R::fitted, &M::flights), "flights with this phase"),
         field("edge_samples", at(&R::fitted, &M::edge_samples), "samples of the neighbouring phases"),
         field("open_frequency", at(&R::fitted, &M::open_frequency), "the data do not determine the frequency"),
+        field("power", at(&R::fitted, &M::power, &D::by), "what predicts the phase: its `curve`, or its `mean` power"),
+        field("power_reason", at(&R::fitted, &M::power, &D::reason), "why; empty with `--model-kind fourier`"),
         field("not_negative", at(&R::fitted, &M::not_negative), "the curve was limited to 0 W or more"),
         field("mean_power_w", at(&R::mean_power, &P::mean_w), "mean over the flights", optional_key{}),
         field("mean_power_w_interval_95", at(&R::mean_power, &P::interval), "null: a single flight"),
@@ -86,7 +89,7 @@ std::string describe(const mechanical::ModelValidation& validation, bool has_phy
         flights = std::max(flights, score.flights);
     }
     return fmt::format("hold-out error of {} flights: {}; missions use {}{}", flights, fmt::join(errors, ", "),
-                       has_physical ? "physical at a stated airspeed, else " : "", default_model(validation));
+                       has_physical ? "physical at a stated airspeed, else " : "", validation.default_model);
 }
 
 }  // namespace

@@ -271,21 +271,17 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
 }
 
 std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
-                                                                        const FlightArguments& arguments,
-                                                                        std::size_t needed_samples) {
-    const auto needed_by_batch = mechanical::min_samples(mechanical::ModelFitOptions{}.phases.order);
+                                                                        const FlightArguments& arguments) {
     return from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded, needed_samples);
-        const bool is_shown = needed_samples <= needed_by_batch && is_shown_by_batch(call, file);
-        if (!is_shown && loaded.lacks_power.empty())  // which has a diagnostic of its own
+        auto measured = mechanical::extract_flights(loaded);
+        if (!is_shown_by_batch(call, file) && loaded.lacks_power.empty())  // which has a diagnostic of its own
             add_exclusions(call, arguments, file, measured.exclusions);
         return std::move(measured.flights);
     });
 }
 
-std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
-                                                         std::size_t needed_samples) {
-    return std::move(measured_by_aircraft(call, arguments, needed_samples).front().flights);
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments) {
+    return std::move(measured_by_aircraft(call, arguments).front().flights);
 }
 
 void refuse_unknown_flights(const flight::LoadOptions& options, const std::vector<std::string>& flights) {

@@ -121,13 +121,11 @@ void add_exclusions(const StageCall& call, const FlightArguments& arguments, con
 /// Whether this is a flight in the folder of a batch, whose diagnostics the batch has shown.
 bool is_shown_by_batch(const StageCall& call, const std::string& file);
 
-/// The sorties that were measured with so many samples a phase, of all flights that count; warns of excluded ones.
+/// The measured sorties of all flights that count; warns of excluded flights and phases.
 std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
-                                                                        const FlightArguments& arguments,
-                                                                        std::size_t needed_samples);
+                                                                        const FlightArguments& arguments);
 /// The same of stages without --each.
-std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments,
-                                                         std::size_t needed_samples);
+std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments);
 
 /// Whether the filter accepts each of the flights of these names. Notes the excluded ones, with the reason. Throws
 /// InputError where none is accepted.

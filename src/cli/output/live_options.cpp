@@ -42,7 +42,7 @@ PredictionInput read_model_basis(const StageCall& call, const BasisArguments& ar
     if (!arguments.model) throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
     if (!arguments.remaining_s) throw UsageError("no time left given: expected --remaining SECONDS");
     const auto& file = *arguments.model;
-    auto model = mechanical::read_mechanical_model(file);
+    auto model = mechanical::read_predicting_model(file);
     for (const auto& warning : model_warnings(model)) warn(call, fmt::format("{}: {}", file, warning));
     auto basis = live::input_from_model(std::move(model), file, *arguments.remaining_s);
     if (!arguments.airspeed_m_per_s) return basis;

@@ -21,9 +21,9 @@ void add_model_options(Options& options, FitArguments& arguments) {
         "model-kind", arguments.kind,
         {{"fourier", ModelKind::fourier}, {"physical", ModelKind::physical}, {"best", ModelKind::best}},
         {.value = "KIND", .old_name = "model"},
-        "fourier: power over the time of each phase; physical: also power from airspeed and climb, for aircraft on "
-        "wings whose flights measured them; best: also the error of each model on flights excluded from the fit, by "
-        "which missions choose one, and the physical model unless the mean power predicts better");
+        "best: each phase is predicted by its curve over time or by its mean power, as flights excluded from the fit "
+        "show, and with an airspeed by the physical model, unless the mean power predicts better; physical: the "
+        "physical model in any case, power from airspeed and climb; fourier: the curves in any case, without the other");
     options.add("published", arguments.published, input_file("MODEL.toml"), "show Table I next to this model's");
 }
 

@@ -17,14 +17,14 @@ namespace flightwatt::cli {
 
 /// What is fitted.
 enum class ModelKind {
-    fourier,   ///< the curves over time alone
-    physical,  ///< also the physical model, whatever its error
-    best       ///< what mechanical::add_best_power adds
+    fourier,   ///< the curves over time alone, which predict whatever their error
+    physical,  ///< as best, and the physical model whatever its error
+    best       ///< what mechanical::add_best_power decides and adds
 };
 
 struct FitArguments {
     mechanical::ModelFitOptions fit;
-    ModelKind kind = ModelKind::fourier;
+    ModelKind kind = ModelKind::best;
     std::optional<std::string> published;
 };
 

@@ -68,8 +68,8 @@ Start start_of(const PredictorSetup& setup) {
         if (setup.model_file.empty()) throw UsageError("no model given: expected mission_file, or model_file");
         if (!setup.remaining_s) throw UsageError("model_file requires remaining_s");
         if (setup.replan) throw UsageError("replan requires mission_file");
-        start.input =
-            input_from_model(mechanical::read_mechanical_model(setup.model_file), setup.model_file, *setup.remaining_s);
+        auto model = mechanical::read_predicting_model(setup.model_file);
+        start.input = input_from_model(std::move(model), setup.model_file, *setup.remaining_s);
     }
     auto& input = *start.input;
     input.remaining_s = setup.remaining_s;

@@ -120,6 +120,7 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
         const int order = std::max(1, options.order);
         const double nyquist = gap > 0.0 ? std::numbers::pi / (order * gap) : 0.0;
         if (nyquist <= range.low_rad) {
+            if (options.order == 0) continue;
             throw NoResultError(
                 fmt::format("flight '{}': {} samples, {:.3g} of the phase apart, are too sparse for a "
                             "Fourier series of order {}",

@@ -22,7 +22,7 @@ constexpr double max_phase_s = 1e7;  // a third of a year: beyond, it is a mista
 
 std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
     if (root.string("mechanical") == "none") return std::nullopt;
-    return with_default_power(mechanical::read_mechanical_model(file_of(root, "mechanical")));
+    return mechanical::read_predicting_model(file_of(root, "mechanical"));
 }
 
 /// The held-out score of the model that predicts the power (with an airspeed or a path, that of the cruise), if its
@@ -31,7 +31,7 @@ void find_power_model(const TomlTable& root, MissionSetup& mission) {
     if (!mission.mechanical || !mission.mechanical->validation) return;
     const auto& validation = *mission.mechanical->validation;
     const bool knows_airspeed = root.has("airspeed_m_per_s") || root.has("path");
-    const std::string model(knows_airspeed ? "physical" : default_model(validation));
+    const auto model = knows_airspeed ? "physical" : default_model(*mission.mechanical);
     const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
     if (score != validation.scores.end())
         mission.power_model = *score;

@@ -199,9 +199,11 @@ std::string prediction_line(const PageSummary& answers, bool synthetic) {
         const auto score = score_of(answers.validated, std::string(model), std::nullopt);
         return score ? score->mean_absolute_error_percent : std::nullopt;
     };
-    const bool prefers_curve = answers.model && answers.model->validation && answers.model->validation->prefers_curve;
     const auto known = error_of("physical");
-    const auto unknown = error_of(prefers_curve ? "fourier" : "constant_mean");
+    auto unknown = error_of("constant_mean");
+    if (answers.model && answers.model->validation)
+        for (const auto& score : answers.model->validation->scores)
+            if (score.model == answers.model->validation->default_model) unknown = score.mean_absolute_error_percent;
     if (!known && !unknown) return "";
     return fmt::format("{:.0f} % off in total energy{}. Each flight is predicted from the others{}.",
                        known ? *known : *unknown,

@@ -93,14 +93,14 @@ TEST(AirspeedToml, NamesTheModelThatSaysThePowerAndItsError) {
     model.flights = {{"a", {}}, {"b", {}}};
     for (auto& flight : model.flights)
         flight.phases[flight::Phase::cruise] = mechanical::PhaseContribution{0.5, 600.0, 0.1, 500, 25.0};
-    model.validation = {false, {{"constant_mean", 4, 18.6}, {"fourier", 4, 15.0}, {"physical", 3, 2.7}}};
+    model.validation = {"constant_mean", {{"constant_mean", 4, 18.6}, {"fourier", 4, 15.0}, {"physical", 3, 2.7}}};
     const auto read = [&](const std::string& lines) {
         write_wing(model, folder / "model.toml");
         return scheduled(on_model("model.toml", lines), folder / "m.toml");
     };
     EXPECT_EQ(read("").setup.power_model.value().model, "constant_mean");
     EXPECT_DOUBLE_EQ(cruise_w(read("")), 25.0);
-    model.validation->prefers_curve = true;
+    model.validation->default_model = "fourier";
     EXPECT_EQ(read("").setup.power_model.value().mean_absolute_error_percent, 15.0);
     EXPECT_NE(cruise_w(read("")), 25.0);
     const auto physical = read("airspeed_m_per_s = 12");
