@@ -31,7 +31,8 @@ struct PhysicalFit {
 /// chosen by cross-validation over flights (ten groups of more than ten), or over fifths of a single flight's time:
 ///   first       the drag, or a constant where that predicts bins better by min_mse_reduction
 ///   then        one by one, the term that lowers the error of the mean power of whole phases most, if that is by
-///               min_mse_reduction, in more than half of the flights (of two, in one), and bins are predicted no worse
+///               min_mse_reduction, in more than half of the flights (of two, in one), and bins are predicted no worse; the payload
+///               where it predicts bins better
 /// Coefficients are physically possible (not negative; a descent returns at most the climb's power), and not more than
 /// the phases of each fit. Bins decide for a single flight, and where a flight has bins of one phase only. Throws
 /// NoResultError where no flight has bins, or they do not determine a single term.

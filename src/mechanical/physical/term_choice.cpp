@@ -204,7 +204,10 @@ std::optional<Candidate> try_term(const Folds& of, const std::vector<PowerTerm>&
     }
     trial.rms_before_w = before.rms_w();
     trial.rms_after_w = error->rms_w();
-    if (!is_less(of, error->deciding_w2, before.deciding_w2)) {
+    // What payload adds is small against a missing term of take-off and landing: bins alone decide on it.
+    const bool is_payload = trial.term == PowerTerm::payload;
+    if (is_payload ? error->bins_w2.sum() >= before.bins_w2.sum()
+                   : !is_less(of, error->deciding_w2, before.deciding_w2)) {
         trial.reason = "does not improve predictions";
     } else if (error->bins_w2.sum() > before.bins_w2.sum()) {
         trial.reason = "predicts whole phases better, but bins worse";

@@ -246,33 +246,6 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
 
 }  // namespace
 
-void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
-    const auto payload_kg = optional_number_in(between(0.0, 1e3), mission_table, "payload_kg");
-    if (!payload_kg) return;
-    if (!mission.mechanical || !mission.mechanical->physical || !mission.mechanical->physical->payload_kg)
-        throw InputError(mission_table.where("payload_kg"), "the mechanical model does not know the effect of payload",
-                         "fit one to flights that state theirs: flightwatt fit --model-kind physical FLIGHT...");
-    auto& physical = *mission.mechanical->physical;
-    const auto [low, high] = *physical.payload_kg;
-    if (*payload_kg < low || *payload_kg > high)
-        mission.notes.push_back(
-            fmt::format("payload_kg = {} is beyond that of the model's flights ({:.4g} to {:.4g} kg): its power is "
-                        "extrapolated",
-                        *payload_kg, low, high));
-    const mechanical::FlightState usual{physical.cubic_mean_airspeed_m_per_s.value_or(physical.airspeed_m_per_s.high)};
-    const double flown_w = power_w(physical, usual);
-    physical.load.payload_kg = *payload_kg;
-    const double factor = flown_w > 0.0 ? power_w(physical, usual) / flown_w : 1.0;
-    for (auto& phase : mission.mechanical->phases.values) {
-        phase.fourier.a0_w *= factor;
-        for (auto* coefficients : {&phase.fourier.cos_w, &phase.fourier.sin_w})
-            for (auto& value : *coefficients) value *= factor;
-    }
-    for (auto& flight : mission.mechanical->flights)
-        for (auto& part : flight.phases.values)
-            if (part && part->mean_power_w) *part->mean_power_w *= factor;
-}
-
 void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     constexpr std::string_view key = "airspeed_m_per_s";
     if (!mission_table.has(key)) return;

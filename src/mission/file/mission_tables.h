@@ -21,7 +21,8 @@ std::filesystem::path file_of(const TomlTable& table, std::string_view key);
 std::optional<Packs> read_packs(const TomlTable& mission);
 
 /// Changes the mechanical model to the mission's payload_kg, if it is stated: its phases in proportion to the physical
-/// model's power. Throws InputError for a model that does not know its effect.
+/// model's power, or, where the flights do not determine that, by their takeoff_mass_kg and an assumption, with a note
+/// and a wider spread. Throws InputError where neither is known.
 void apply_payload(const TomlTable& mission_table, MissionSetup& mission);
 
 /// Sets the level of the cruise to that of the mission's airspeed_m_per_s by the physical model; leaves it where none

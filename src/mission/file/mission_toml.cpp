@@ -285,6 +285,7 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
                              "cutoff_voltage_v",
                              "packs",
                              "payload_kg",
+                             "takeoff_mass_kg",
                              "reserve_soc_percent",
                              "may_charge",
                              "components",
