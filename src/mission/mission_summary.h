@@ -66,7 +66,10 @@ struct MonteCarloResult {
     double probability_battery_failure = 0.0;               ///< that, or cut off, or beyond the power limit
     double probability_below_reserve = 0.0;                 ///< the share of the flights
     double probability_below_reserve_standard_error = 0.0;  ///< sqrt(p (1 - p) / samples)
-    Interval probability_below_reserve_95;                  ///< Wilson's score interval (1927)
+    /// Of the part of new flights: by the number drawn, and by the few flights that show how flights differ.
+    Interval probability_below_reserve_95;
+    /// False: nothing shows how flights differ in power (one flight, a published model). The probabilities are unknown.
+    bool variability_is_known = true;
     UncertaintySources sources;
     std::vector<SocBand> bands;
 };

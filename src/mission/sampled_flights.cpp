@@ -105,6 +105,7 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     flights.samples = options.samples;
     flights.seed = options.seed;
     flights.sources = spreads.sources;
+    flights.variability_is_known = has_known_probability(prepared.setup);
     std::vector<double> final_percent;
     final_percent.reserve(landings.size());
     // Charge left after a battery failure counts as 0.
@@ -117,6 +118,8 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
         flights.final_soc_quantiles_percent[i] =
             quantile(final_percent, units::amount_from_percent(1.0, shown_quantiles_percent[i]));
     count_landings(landings, flights);
+    flights.probability_below_reserve_95 =
+        interval_of_share(flights.probability_below_reserve_95, energy_degrees_of_freedom(prepared.setup, spreads));
     flights.bands = bands_of(landings, times_s);
     return flights;
 }
@@ -124,14 +127,18 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
 std::string describe(const MonteCarloResult& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     const double cut_off = flights.probability_battery_failure - flights.probability_depleted;
+    const auto chance =
+        flights.variability_is_known
+            ? fmt::format("with probability {:.4f} (95 % interval {:.4f} to {:.4f}), depleted {:.4f}{}",
+                          flights.probability_below_reserve, flights.probability_below_reserve_95.low,
+                          flights.probability_below_reserve_95.high, flights.probability_depleted,
+                          cut_off > 0.0 ? fmt::format(", cut off or too weak {:.4f} (counts as empty)", cut_off) : "")
+            : std::string("with unknown probability: nothing shows how the power of flights differs");
     auto text = fmt::format(
-        "{}: {} flights drawn: below the reserve of {:.6g} % with probability {:.4f} (95 % interval {:.4f} "
-        "to {:.4f}), depleted {:.4f}{}; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
-        flights.mission, flights.samples, flights.reserve_soc_percent, flights.probability_below_reserve,
-        flights.probability_below_reserve_95.low, flights.probability_below_reserve_95.high,
-        flights.probability_depleted,
-        cut_off > 0.0 ? fmt::format(", cut off or too weak {:.4f} (counts as empty)", cut_off) : "",
-        flights.final_soc_mean_percent, flights.final_soc_sd_percent);
+        "{}: {} flights drawn: below the reserve of {:.6g} % {}; final state of charge {:.2f} % on average, sd {:.2f}, "
+        "quantiles",
+        flights.mission, flights.samples, flights.reserve_soc_percent, chance, flights.final_soc_mean_percent,
+        flights.final_soc_sd_percent);
     for (std::size_t i = 0; i < q.size(); ++i) text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
     return text + "; " + describe(flights.sources);
 }

@@ -36,14 +36,21 @@ Fields<MonteCarloResult> record_fields(const MonteCarloResult*) {
             all.emplace_back(std::to_string(shown_quantiles_percent[i]), flights.final_soc_quantiles_percent[i]);
         return all;
     };
+    const auto known = [](auto member) {
+        return [member](const R& flights) {
+            return flights.variability_is_known ? std::optional(flights.*member) : std::nullopt;
+        };
+    };
     return list_fields<R>(
-        field("probability_below_reserve", &R::probability_below_reserve, "fraction of the flights below the reserve",
+        field("probability_below_reserve", known(&R::probability_below_reserve),
+              "fraction of the flights below the reserve; null: how flights differ is unknown",
               column_if_any("probability below reserve", ".4f"), csv_column{}),
-        field("probability_below_reserve_interval_95", &R::probability_below_reserve_95, "Wilson's interval"),
-        field("probability_below_reserve_standard_error", &R::probability_below_reserve_standard_error,
-              "standard error of the probability"),
-        field("probability_depleted", &R::probability_depleted, "the battery is empty before the end"),
-        field("probability_battery_failure", &R::probability_battery_failure, "empty, cut off or too weak"),
+        field("probability_below_reserve_interval_95", known(&R::probability_below_reserve_95),
+              "of new flights, by the number drawn and by the few flights of the model"),
+        field("probability_below_reserve_standard_error", known(&R::probability_below_reserve_standard_error),
+              "of the number drawn"),
+        field("probability_depleted", known(&R::probability_depleted), "the battery is empty before the end"),
+        field("probability_battery_failure", known(&R::probability_battery_failure), "empty, cut off or too weak"),
         field("samples", &R::samples, "number of drawn flights"), field("seed", &R::seed, "seed of the random numbers"),
         field("final_soc_mean_percent", &R::final_soc_mean_percent, "mean over the flights"),
         field("final_soc_sd_percent", &R::final_soc_sd_percent, "standard deviation over the flights"),

@@ -84,15 +84,10 @@ void find_duration(const MissionSetup& mission, Phase phase, FlightUncertainty& 
     } else if (mission.duration_is_stated[phase]) {
         basis = "fixed, as the mission states it without duration_sd_s";
     } else if (is_known_of_flights(spread)) {
-        std::vector<double> flown_s;
-        for (const auto& value : spread.of_flights)
-            if (value) flown_s.push_back(*value);
-        const double relative = sample_sd(flown_s) / mean(flown_s);
-        sd_s = mission.duration_s[phase] * relative *
-               std::sqrt(1.0 + forecast_of(*mission.mechanical, phase).weight_square_sum);
-        spread.sd = sd_s;
-        spread.degrees_of_freedom = static_cast<double>(flown_s.size() - 1);
-        basis = fmt::format("sd {:.4g} s, of {} flights, {}", sd_s, flown_s.size(),
+        const auto estimate = estimate_duration(*mission.mechanical, phase, mission.duration_s[phase]);
+        spread.sd = sd_s = estimate.sd_s;
+        spread.degrees_of_freedom = estimate.degrees_of_freedom;
+        basis = fmt::format("sd {:.4g} s, of {:.0f} flights, {}", sd_s, spread.degrees_of_freedom + 1.0,
                             student_words(spread.degrees_of_freedom));
         estimated.push_back(std::move(spread));
     }
@@ -187,6 +182,10 @@ bool has_flight_variability(const MissionSetup& mission) {
            });
 }
 
+bool has_known_probability(const MissionSetup& mission) {
+    return !mission.mechanical || has_flight_variability(mission);
+}
+
 MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
     const auto& model = mission.mechanical->phases[phase];
     const auto of = [](double sd_w, const std::string& basis) { return fmt::format("sd {:.4g} W, {}", sd_w, basis); };
@@ -221,6 +220,24 @@ void require_flight_variability(const MissionSetup& mission) {
                          "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
                          "[uncertainty] with level_sd_percent");
     }
+}
+
+double energy_degrees_of_freedom(const MissionSetup& mission, const FlightUncertainty& spreads) {
+    if (!mission.mechanical) return infinite_dof;
+    mechanical::EnergyEstimate energy;
+    for (const auto phase : all_phases) {
+        if (mission.duration_s[phase] == 0.0) continue;
+        const auto add = [&](std::size_t quantity, double sd_j) {
+            double freedom = infinite_dof;
+            for (const auto& joint : spreads.of_flights)
+                if (std::ranges::count(joint.quantities, quantity) > 0) freedom = joint.degrees_of_freedom;
+            add_variance(energy, sd_j * sd_j, freedom);
+        };
+        add(level_index(phase), spreads.level_sd_w[phase] * mission.duration_s[phase]);
+        add(duration_index(phase), mean_level_w(mission, phase) * spreads.duration_sd_s[phase]);
+    }
+    return energy.satterthwaite_sum > 0.0 ? energy.variance_wh2 * energy.variance_wh2 / energy.satterthwaite_sum
+                                          : infinite_dof;
 }
 
 FlightUncertainty collect_uncertainty(const MissionSetup& mission) {

@@ -28,6 +28,11 @@ double student_from_normal(double normal, double degrees_of_freedom);
 /// units of one deviation that is estimated. One after the other, each given those before (docs/methods.md, Eq. 31).
 std::vector<double> student_vector(std::span<const double> normals, double degrees_of_freedom);
 
+/// Returns the 95 % interval of the part of new flights that is beyond a threshold, where between `drawn.low` and
+/// `drawn.high` of the flights drawn by Student's t are: drawn flights average over all spreads that few flights allow,
+/// and new flights have one of them (docs/methods.md, Eq. 31a).
+Interval interval_of_share(const Interval& drawn, double degrees_of_freedom);
+
 /// What differs between the phases of flights: levels [W] and durations [s], numbered level and duration of take-off,
 /// those of cruise, those of landing.
 inline constexpr std::size_t phase_quantities = 2 * all_phases.size();
@@ -76,6 +81,9 @@ double mean_level_w(const MissionSetup& mission, Phase phase);
 /// Whether the variability between flights is known for each flown phase.
 bool has_flight_variability(const MissionSetup& mission);
 
+/// Whether the probabilities of drawn flights are known: of a mission with a mechanical model by that variability.
+bool has_known_probability(const MissionSetup& mission);
+
 /// Throws InputError unless it is. Needs a mechanical model.
 void require_flight_variability(const MissionSetup& mission);
 
@@ -96,6 +104,9 @@ struct FlightUncertainty {
     battery::BatteryIntervals battery;          ///< 95 % intervals of what differs
     UncertaintySources sources;
 };
+
+/// Returns the degrees of freedom of the mechanical energy of drawn flights, by Welch and Satterthwaite.
+double energy_degrees_of_freedom(const MissionSetup& mission, const FlightUncertainty& spreads);
 
 /// The highest power [W] that a flight of the model had in any phase, by its curve or on average; infinite where the
 /// model keeps neither.

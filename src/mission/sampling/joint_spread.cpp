@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include <Eigen/Eigenvalues>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -62,7 +64,39 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& matrix) {
     return parts.eigenvectors() * roots.asDiagonal() * parts.eigenvectors().transpose();
 }
 
+/// Returns the part of new flights beyond a threshold that flights drawn by Student's t exceed with probability `drawn`:
+/// the true part is greater with `confidence`. The threshold is `t` deviations of the flights' mean away: a noncentral t, whose
+/// parameter is found by the distribution of the deviation.
+double share_at(double drawn, double degrees_of_freedom, double confidence) {
+    if (!(drawn > 0.0 && drawn < 1.0)) return drawn;
+    constexpr int nodes = 200;
+    const double flights = degrees_of_freedom + 1.0;
+    const double t = quantile(complement(Student(degrees_of_freedom), drawn)) * std::sqrt(flights + 1.0);
+    std::vector<double> shifted;
+    const boost::math::chi_squared_distribution<double, Policy> squares(degrees_of_freedom);
+    for (int i = 0; i < nodes; ++i)
+        shifted.push_back(t * std::sqrt(quantile(squares, (i + 0.5) / nodes) / degrees_of_freedom));
+    const auto [least, most] = std::ranges::minmax(shifted);
+    constexpr double far = 10.0;  // standard normal deviations
+    double low = least - far;
+    double high = most + far;
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = std::midpoint(low, high);
+        double above = 0.0;
+        for (const double at : shifted) above += cdf(Normal(), at - middle) / nodes;
+        (above > 1.0 - confidence ? low : high) = middle;
+    }
+    return cdf(complement(Normal(), low / std::sqrt(flights)));
+}
+
 }  // namespace
+
+Interval interval_of_share(const Interval& drawn, double degrees_of_freedom) {
+    if (std::isinf(degrees_of_freedom)) return drawn;
+    constexpr double tail = 0.025;
+    return {share_at(drawn.low, degrees_of_freedom, 1.0 - tail), share_at(drawn.high, degrees_of_freedom, tail)};
+}
 
 double student_from_normal(double normal, double degrees_of_freedom) {
     if (normal == 0.0 || std::isinf(degrees_of_freedom)) return normal;

@@ -132,6 +132,13 @@ std::vector<std::string> notes_of(const SimulatedMission& simulated, const Missi
     std::vector<std::string> notes;
     if (auto warning = capacity_warning(setup.battery); !warning.empty())
         notes.push_back("Warning: " + warning + (summary.by_flights ? "; " + describe(*summary.by_flights, 1) : ""));
+    if (known_probability_below_reserve(summary)) {
+        constexpr double exact = 0.05;
+        const auto& missed = summary.samples->probability_below_reserve_95;
+        if (missed.high - missed.low > exact)
+            notes.push_back(fmt::format("The few flights of the model allow probabilities from {} to {}",
+                                        probability_text(1.0 - missed.high), probability_text(1.0 - missed.low)));
+    }
     if (!answer.no_reach_reason.empty()) notes.push_back("No longest cruise: " + answer.no_reach_reason);
     if (answer.is_unplanned) notes.emplace_back("The longest cruise is that with the least software");
     if (simulated.planned && !simulated.planned->feasible)
@@ -165,13 +172,13 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
     const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
     const bool is_cruise = reach && reach->unit == ReachUnit::cruise_s;
     const double landing = summary.final_soc_percent.value_or(0.0);
+    const auto below = known_probability_below_reserve(summary);
     return {.outcome = outcome,
             .words = outcome_words(outcome, summary),
             .lead = describe_landing(summary),
             .runs = valid_utf8(describe_software(simulated)),
             .landing = landing > 0.0 ? fmt::format("{:.1f} %", landing) : "0 %",
-            .probability = summary.samples ? probability_text(1.0 - summary.samples->probability_below_reserve)
-                                           : std::string("unknown"),
+            .probability = below ? probability_text(1.0 - *below) : std::string("unknown"),
             .reach_name = name_of_reach(answer),
             .reach = reach ? describe_reach(*reach) : "",
             .planned = is_cruise ? duration_text(planned_cruise_s(simulated)) : "",

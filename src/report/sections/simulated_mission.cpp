@@ -83,7 +83,7 @@ auto try_compute(const Compute& compute, std::string* reason = nullptr) -> std::
 Outcome modelled_outcome(const mission::MissionSummary& summary) {
     if (!summary.feasible) return Outcome::fails;
     if (!summary.keeps_reserve) return Outcome::misses;
-    const bool is_likely = !summary.samples || summary.samples->probability_below_reserve <= 1.0 - reach_probability;
+    const bool is_likely = known_probability_below_reserve(summary).value_or(0.0) <= 1.0 - reach_probability;
     return is_likely ? Outcome::keeps : Outcome::may_miss;
 }
 
@@ -117,7 +117,7 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     if (setup_of(*mission).packs) return answer;  // reach and capacity are of one flight
     answer.is_unplanned = std::holds_alternative<mission::PlanningProblem>(*mission);
     answer.reach = try_compute([&] { return find_reach(mission_of); }, &answer.no_reach_reason);
-    if (answer.reach && simulated.simulation.summary.samples)
+    if (answer.reach && known_probability_below_reserve(simulated.simulation.summary))
         answer.reach_at_95_percent = try_compute([&] { return find_reach(mission_of, reach_probability); });
     if (modelled_outcome(simulated.simulation.summary) == Outcome::keeps) return answer;
     const auto probability = answer.reach_at_95_percent ? std::optional(reach_probability) : std::nullopt;
@@ -125,6 +125,11 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
     // It is that of the minimum of software, which the present pack may suffice for.
     if (capacity_ah && *capacity_ah > simulated.mission.setup.battery.capacity_ah) answer.capacity_ah = capacity_ah;
     return answer;
+}
+
+std::optional<double> known_probability_below_reserve(const mission::MissionSummary& summary) {
+    const bool is_known = summary.samples && summary.samples->variability_is_known;
+    return is_known ? std::optional(summary.samples->probability_below_reserve) : std::nullopt;
 }
 
 Outcome outcome_of(const SimulatedMission& simulated) {
@@ -138,7 +143,7 @@ std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions)
     const auto rank = [&](std::size_t i) {
         const auto& summary = missions[i].simulation.summary;
         return std::tuple(-static_cast<int>(outcome_of(missions[i])),
-                          summary.samples ? -summary.samples->probability_below_reserve : 0.0,
+                          -known_probability_below_reserve(summary).value_or(0.0),
                           summary.final_soc_percent.value_or(-1.0));
     };
     std::vector<std::size_t> order(missions.size());
@@ -155,14 +160,12 @@ Fields<MissionOutput> record_fields(const MissionOutput*) {
     const auto of = [](auto member) {
         return at(&R::simulated, &M::simulation, &mission::Simulation::summary, member);
     };
-    const auto probability = [](const S& summary) {
-        return summary.samples ? std::optional(summary.samples->probability_below_reserve) : std::nullopt;
-    };
     return {field("mission", at(&R::simulated, &M::title), "title of the mission"),
             field("final_soc_percent", of(&S::final_soc_percent), "null: the battery cannot deliver the power"),
             field("reserve_soc_percent", of(&S::reserve_soc_percent), "reserve of the mission"),
             field("keeps_reserve", of(&S::keeps_reserve), "the reserve is left, as modelled"),
-            field("probability_below_reserve", of(probability), "of 1000 flights; null: without variability data"),
+            field("probability_below_reserve", of(known_probability_below_reserve),
+                  "of 1000 flights; null: how flights differ is unknown"),
             field("utility", of(&S::utility), "mean utility per second"),
             field("reach", at(&R::assessment, &A::reach), "largest feasible mission, as modelled"),
             field("reach_with_95_percent", at(&R::assessment, &A::reach_at_95_percent), "with that probability"),

@@ -55,6 +55,9 @@ enum class Outcome {
     fails,     ///< runs empty, is cut off, or asks for more power than the battery can deliver
 };
 
+/// Returns the probability of landing below the reserve; none where nothing shows how flights differ.
+std::optional<double> known_probability_below_reserve(const mission::MissionSummary& summary);
+
 Outcome outcome_of(const SimulatedMission& simulated);
 
 /// A mission for readers.

@@ -4,10 +4,15 @@
 #include <cmath>
 #include <random>
 
+#include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
 namespace {
+
+double student_t_beyond(double value, double degrees_of_freedom) {
+    return cdf(complement(boost::math::students_t(degrees_of_freedom), value));
+}
 
 TEST(Student, LiesAsFarOutAsTheNormal) {
     for (const double freedom : {1.0, 2.0, 3.5, 10.0})
@@ -42,6 +47,42 @@ TEST(Student, HasSumsOfItsOwnKind) {
         EXPECT_NEAR(beyond / static_cast<double>(draws), 0.05, 0.005) << angle;
         EXPECT_GT(both / static_cast<double>(draws), 0.01) << "independent ones: 0.0025";
     }
+}
+
+/// Flights of a normal distribution, whose mean and deviation are estimated from a few of them. Student's t puts a
+/// greater part beyond a far threshold than new flights have: 6 % for 0.7 % of two flights, on average. The interval
+/// contains the true part nevertheless.
+TEST(Student, IntervalOfAShareContainsThatOfNewFlights) {
+    constexpr int models = 200;
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    for (const int flights : {2, 3, 6}) {
+        for (const double threshold : {1.0, 2.457}) {
+            const double true_share = 0.5 * std::erfc(threshold / std::sqrt(2.0));
+            int held = 0;
+            double drawn_sum = 0.0;
+            for (int i = 0; i < models; ++i) {
+                std::vector<double> flown(static_cast<std::size_t>(flights));
+                for (double& value : flown) value = normal(random);
+                const double off = (threshold - mean(flown)) / (sample_sd(flown) * std::sqrt(1.0 + 1.0 / flights));
+                const double drawn = student_t_beyond(off, flights - 1.0);
+                drawn_sum += drawn;
+                const auto interval = interval_of_share({drawn, drawn}, flights - 1.0);
+                held += interval.low <= true_share && true_share <= interval.high;
+            }
+            EXPECT_NEAR(held / static_cast<double>(models), 0.95, 0.05) << flights << " flights, " << threshold;
+            EXPECT_GT(drawn_sum / models, true_share) << "the heavy tail";
+        }
+    }
+}
+
+TEST(Student, IntervalOfAShareIsThatOfTheDrawnFlightsWhereTheSpreadIsKnown) {
+    const Interval drawn{0.01, 0.03};
+    EXPECT_EQ(interval_of_share(drawn, infinite_dof), drawn);
+    const auto of_many = interval_of_share(drawn, 1e4);
+    EXPECT_NEAR(of_many.low, drawn.low, 0.001);
+    EXPECT_NEAR(of_many.high, drawn.high, 0.002);
+    EXPECT_EQ(interval_of_share({0.0, 1.0}, 1.0), (Interval{0.0, 1.0}));
 }
 
 using Values = std::vector<std::optional<double>>;
