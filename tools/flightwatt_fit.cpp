@@ -112,9 +112,8 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
     if (arguments.flights.each && !call.output)
         throw UsageError("--each needs -o FOLDER, for the models FOLDER/AIRCRAFT/model.toml");
     const auto published = read_published(arguments.model);
-    const auto measured =
-        cli::measured_by_aircraft(cli::with_chosen_flights(call, arguments.filter, arguments.flights.load),
-                                  arguments.flights);
+    const auto measured = cli::measured_by_aircraft(
+        cli::with_chosen_flights(call, arguments.filter, arguments.flights.load), arguments.flights);
     if (arguments.flights.each) return fit_each(call, arguments, measured, published);
     fit_flights(call, arguments, measured.front().flights, published);
     return cli::ok;
@@ -128,7 +127,7 @@ int flightwatt::stages::fit_stage(int argc, char** argv) {
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. A phase is predicted by its mean power
 where the samples do not determine the curve, or it predicts flights left out of the fit worse; the model's
-file says which and why. With --published the curves predict. The model goes to the standard output
+file states which and why. With --published the curves predict. The model goes to the standard output
 as TOML; with -o it goes to the file and Table I is shown.)" +
             std::string(cli::several_flights_text)};
     stage.next = [](const auto& call) {

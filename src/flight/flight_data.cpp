@@ -96,7 +96,7 @@ Diagnostics selection_diagnostics(const FlightData& data) {
         is_partial_record(skip) ? add(note, "cut at power-off", {describe(skip)})
                                 : add(warning, "damaged log", {describe(skip)});
     if (data.log_is_missing && data.assumed_definitions.empty()) add(note, "no .log", {"no .log"});
-    add(note, "reading of the log", data.notes);
+    add(note, "units and recordings of the log", data.notes);
     return found;
 }
 

@@ -50,7 +50,7 @@ bool is_flown(const LinkGap& gap, std::span<const Sortie> sorties) {
 }
 
 std::string describe(const LinkGap& gap) {
-    return fmt::format("gap of {:.0f} s from {:.1f} s on, of which nothing arrived: {}", gap.duration_s(), gap.start_s,
+    return fmt::format("gap of {:.0f} s from {:.1f} s on, in which nothing arrived: {}", gap.duration_s(), gap.start_s,
                        gap.is_counted ? "its energy is by the on-board counter" : "no counter shows its energy");
 }
 

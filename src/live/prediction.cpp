@@ -347,12 +347,13 @@ Prediction predict_energy(const PredictionInput& input, const FlightProgress& fl
     if (prediction.uses_physical_model) warn_of_level(input.model.physical.value(), prediction.cruise.gain, remarks);
     if (prediction.uses_physical_model || prediction.overtime_s) add_other_phases(input, prediction);
     add_durations(input, takeoff, landing, prediction);
-    for (const auto& [energy, what] : {std::pair{prediction.cruise.energy, "rest of the cruise"},
-                                       {prediction.landing, "landing"}})
+    for (const auto& [energy, what] :
+         {std::pair{prediction.cruise.energy, "rest of the cruise"}, {prediction.landing, "landing"}})
         if (!(energy.energy_wh >= 0.0))
-            throw NoResultError(fmt::format("the model predicts {:.3g} Wh for the {}: its flights do not determine that "
-                                            "power, or this one is none like them",
-                                            energy.energy_wh, what));
+            throw NoResultError(
+                fmt::format("the model predicts {:.3g} Wh for the {}: its flights do not determine that "
+                            "power, or this flight differs from them",
+                            energy.energy_wh, what));
     prediction.interval = interval_95(prediction.remaining_energy).value();
     return prediction;
 }

@@ -40,8 +40,8 @@ std::string_view bound_reached(const PhaseModel& phase) {
 }  // namespace
 
 std::string default_model(const MechanicalModel& model) {
-    const auto means = std::ranges::count_if(
-        model.phases.values, [](const auto& phase) { return phase.power.by == PowerBasis::mean; });
+    const auto means = std::ranges::count_if(model.phases.values,
+                                             [](const auto& phase) { return phase.power.by == PowerBasis::mean; });
     return means == 0 ? "fourier" : means == std::ssize(model.phases.values) ? "constant_mean" : "by_phase";
 }
 

@@ -268,7 +268,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     if (model.validation)
         fields.line(
             "\n# Errors of each model on hold-out flights. Missions that state no airspeed use\n"
-            "# default_model, which is what `power` of the phases says");
+            "# default_model, which is what `power` of the phases states");
     fields.optional_table("validation", model.validation, list_validation, TomlLayout::section);
     if (model.physical)
         fields.line("\n# Power from the motion through the air: power_w = sum of coefficient * value over the terms");

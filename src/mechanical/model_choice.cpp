@@ -41,7 +41,7 @@ constexpr std::ptrdiff_t min_flights = 3;
 /// The longest part of a phase without a sample; 1: it has none.
 constexpr double max_gap = 0.25;
 
-/// A curve whose energies are farther off by this factor is still no worse: so few flights cannot tell.
+/// A curve whose energies are farther off by this factor is no worse: few flights cannot show it.
 constexpr double energy_tolerance = 1.05;
 
 bool covers_phase(const PhaseSamples& samples) {
@@ -159,8 +159,7 @@ void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flig
     } catch (const NoResultError&) {  // the mean powers are the model then
     }
     decide_power(model, flights, validated);
-    model.is_rotorcraft =
-        std::ranges::all_of(flights, [](const auto& flight) { return flight.motion.is_rotorcraft; });
+    model.is_rotorcraft = std::ranges::all_of(flights, [](const auto& flight) { return flight.motion.is_rotorcraft; });
     model.validation = validation_of(std::move(validated), model);
     const auto is_physical = [](const auto& score) { return score.model == physical; };
     if (model.physical || !model.validation || std::ranges::none_of(model.validation->scores, is_physical)) return;

@@ -74,7 +74,7 @@ std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 
 /// Decides what predicts each phase of a fitted model (PhaseModel::power), the only place that does. The curve does
 /// where three flights or more have samples all over the phase, and on flights left out its energies are as near as
-/// those of the mean power (or 5 % farther, which a few flights cannot tell apart) and the power over time is nearer.
+/// those of the mean power (or 5 % farther, which a few flights cannot distinguish) and the power over time is nearer.
 /// Else the mean power does, and the drift is about it. `flights` are the model's, in its order; `validated` some of
 /// them, left out.
 void decide_power(MechanicalModel& model, std::span<const MeasuredFlight> flights,

@@ -291,7 +291,7 @@ TEST(Batch, TellsItsProgressOfEveryLogOnce) {
     for (int number = 1; number <= 4; ++number) copy_sample(number, folder / "in");
     std::vector<std::size_t> counts;
     std::vector<std::string> names;
-    run_batch(find_logs({(folder / "in").string()}), {folder / "out", {}, 3, 8},
+    run_batch(find_logs({(folder / "in").string()}), {folder / "out", {}, 3},
               [&](std::size_t done, std::size_t all, const BatchFlight& flight) {
                   EXPECT_EQ(all, 4U);
                   counts.push_back(done);
@@ -397,9 +397,9 @@ TEST(Batch, ReadsTheNamedAircraft) {
     copy_sample(1, folder / "in");
     const auto logs = find_logs({(folder / "in").string()});
     const auto silent = [](std::size_t, std::size_t, const BatchFlight&) {};
-    const auto right = run_batch(logs, {folder / "out", "7", 1, 8}, silent);
+    const auto right = run_batch(logs, {folder / "out", "7", 1}, silent);
     EXPECT_TRUE(right[0].record.accepted);
-    const auto wrong = run_batch(logs, {folder / "out", "9", 1, 8}, silent);
+    const auto wrong = run_batch(logs, {folder / "out", "9", 1}, silent);
     EXPECT_FALSE(wrong[0].was_up_to_date);  // another aircraft, another result
     EXPECT_THAT(wrong[0].record.error, HasSubstr("aircraft 9 sent nothing"));
 }

@@ -75,7 +75,8 @@ Decided cruises(std::size_t count, double mean_wh, double curve_wh, double mean_
     Decided of;
     for (std::size_t i = 0; i < count; ++i) {
         auto& flight = of.flights.emplace_back();
-        flight.samples.phases[Phase::cruise] = PhaseSamples{"f", 100.0, {0.1, 0.3, 0.5, 0.7, 0.9}, {20, 22, 24, 22, 20}};
+        flight.samples.phases[Phase::cruise] =
+            PhaseSamples{"f", 100.0, {0.1, 0.3, 0.5, 0.7, 0.9}, {20, 22, 24, 22, 20}};
         of.model.flights.emplace_back().phases[Phase::cruise] = PhaseContribution{1.0 / 3.0, 100.0, 0.1, 5, 21.6};
         of.validated.push_back(flight_of({{"fourier", curve_wh}, {"constant_mean", mean_wh}}));
         of.validated.back().predictions[0].square_error_w2[Phase::cruise] = curve_w2;
@@ -136,7 +137,8 @@ TEST(ValidationOf, HasTheScoreOfPhasesThatDiffer) {
 TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
     const auto validation =
         validation_of({flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}, {"in_flight", 1.0}, {"physical", 2.0}}),
-                       flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})}, {})
+                       flight_of({{"fourier", 5.0}, {"constant_mean", -6.0}})},
+                      {})
             .value();
     EXPECT_THAT(models_of(validation), ElementsAre("constant_mean", "fourier", "physical"));
     EXPECT_EQ(validation.scores[0].flights, 2U);

@@ -62,8 +62,8 @@ std::optional<CurveAtFrequency> curve_at(const WeightedFlights& samples, Eigen::
         const auto basis = fourier_basis(flight.tau, static_cast<int>(size - 1) / 2, theta_rad);
         const auto fit = solve_least_squares(basis, as_vector(flight.power_w));
         if (!fit) return std::nullopt;
-        const double variance_w2 =
-            samples.inflation * fit->residual_square_sum / static_cast<double>(std::max(basis.rows() - size, Eigen::Index{1}));
+        const double variance_w2 = samples.inflation * fit->residual_square_sum /
+                                   static_cast<double>(std::max(basis.rows() - size, Eigen::Index{1}));
         curve.coefficients_w += samples.weights[i] * fit->coefficients;
         curve.covariance_w2 += samples.weights[i] * samples.weights[i] * variance_w2 * fit->covariance;
         curve.square_sum_w2 += fit->residual_square_sum;

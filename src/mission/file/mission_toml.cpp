@@ -271,28 +271,11 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
                          "flightwatt fit --model-kind physical");
-    root.refuse_keys_except({"format",
-                             "name",
-                             "mechanical",
-                             "duration_s",
-                             "phase_clock",
-                             "airspeed_m_per_s",
-                             "path",
-                             "wind",
-                             "battery",
-                             "initial_soc_percent",
-                             "capacity_ah",
-                             "cutoff_voltage_v",
-                             "packs",
-                             "payload_kg",
-                             "takeoff_mass_kg",
-                             "reserve_soc_percent",
-                             "may_charge",
-                             "components",
-                             "schedule",
-                             "plan",
-                             "policy",
-                             "uncertainty"});
+    root.refuse_keys_except(
+        {"format",   "name",       "mechanical",      "duration_s",          "phase_clock", "airspeed_m_per_s",
+         "path",     "wind",       "battery",         "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
+         "packs",    "payload_kg", "takeoff_mass_kg", "reserve_soc_percent", "may_charge",  "components",
+         "schedule", "plan",       "policy",          "uncertainty"});
     require_known_format(root);
     MissionSetup mission;
     mission.file = path.string();

@@ -24,8 +24,7 @@ bool has_term(const PhysicalModel& model, PowerTerm term) {
 }
 
 bool knows_payload(const PhysicalModel& model) {
-    return has_term(model, PowerTerm::payload) ||
-           (has_term(model, PowerTerm::hover) && model.load.rotors);
+    return has_term(model, PowerTerm::payload) || (has_term(model, PowerTerm::hover) && model.load.rotors);
 }
 
 FlightState usual_motion(const PhysicalModel& model) {
@@ -51,8 +50,7 @@ void set_payload(double payload_kg, bool is_rotorcraft, PhysicalModel& model) {
     flown.load.payload_kg = flown_kg;
     const double flown_w = power_w(flown, usual_motion(model));
     const double mass_kg = hover_exponent * flown_w / w_per_kg;  // with the flights' mean payload
-    const double rise_w =
-        flown_w * (std::pow(1.0 + (payload_kg - flown_kg) / mass_kg, hover_exponent) - 1.0);
+    const double rise_w = flown_w * (std::pow(1.0 + (payload_kg - flown_kg) / mass_kg, hover_exponent) - 1.0);
     model.load.payload_kg = flown_kg + rise_w / w_per_kg;
 }
 
@@ -145,7 +143,8 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     }
     const auto assumed = assume_payload(*payload_kg, mass_kg, model);
     if (assumed.reason.empty())
-        throw InputError(where, "the mechanical model does not know the effect of payload: its flights do not determine it",
+        throw InputError(where,
+                         "the mechanical model does not know the effect of payload: its flights do not determine it",
                          "add takeoff_mass_kg, the mass of the aircraft as its flights were flown; for wings, whose "
                          "flights must determine the induced drag too, fit flights that state their payload");
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));

@@ -6,7 +6,6 @@
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
-#include "mission/sampling/flight_spreads.h"
 #include "mission/schedule.h"
 #include "mission/simulation.h"
 
@@ -167,8 +166,10 @@ std::optional<QosGrid> qos_grid(const mission::MissionSetup& mission) {
     for (const auto& schedule : schedules_of(mission, grid.x, grid.y)) {
         const mission::PreparedMission prepared{mission, schedule, std::nullopt};
         QosCell cell{simulate_prepared(prepared, steps).simulation, std::nullopt};
-        if (has_uncertainty(mission) && has_known_probability(mission))
-            cell.probability = 1.0 - sample_flights(prepared, {}, {flights_drawn, 1}).probability_below_reserve;
+        if (has_uncertainty(mission)) {
+            const auto drawn = sample_flights(prepared, {}, {flights_drawn, 1});
+            if (drawn.variability_is_known) cell.probability = 1.0 - drawn.probability_below_reserve;
+        }
         grid.cells.push_back(std::move(cell));
     }
     return grid;

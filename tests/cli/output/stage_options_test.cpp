@@ -35,7 +35,7 @@ TEST(FitOptions, AreTheLibrarysUnlessGiven) {
     const auto arguments = fit_arguments({});
     EXPECT_EQ(arguments.fit.phases.order, usual.phases.order);
     EXPECT_EQ(arguments.fit.weighting, usual.weighting);
-    EXPECT_EQ(arguments.kind, ModelKind::fourier);
+    EXPECT_EQ(arguments.kind, ModelKind::best);
     const auto other = fit_arguments({"--order", "5", "--weights", "uniform", "--model-kind", "best"});
     EXPECT_EQ(other.fit.phases.order, 5);
     EXPECT_EQ(other.fit.weighting, mechanical::Weighting::uniform);

@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 /// A model of two flights at 200 W; its physical part has these terms, of 100 W each at 1 m/s, but climb.
 mechanical::MechanicalModel model_of(const std::vector<PowerTerm>& terms, bool is_rotorcraft) {
-    auto model =
-        mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
+    auto model = mechanical::read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
     model.is_rotorcraft = is_rotorcraft;
     for (auto& phase : model.phases.values) {
         phase.fourier = {0.01, 200.0, {}, {}};

@@ -81,7 +81,7 @@ TEST(Student, IntervalOfAShareIsThatOfTheDrawnFlightsWhereTheSpreadIsKnown) {
     EXPECT_EQ(interval_of_share(drawn, infinite_dof), drawn);
     const auto of_many = interval_of_share(drawn, 1e4);
     EXPECT_NEAR(of_many.low, drawn.low, 0.001);
-    EXPECT_NEAR(of_many.high, drawn.high, 0.002);
+    EXPECT_NEAR(of_many.high, drawn.high, 0.003);
     EXPECT_EQ(interval_of_share({0.0, 1.0}, 1.0), (Interval{0.0, 1.0}));
 }
 
