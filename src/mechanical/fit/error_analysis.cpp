@@ -1,7 +1,7 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
-#include "mechanical/fit/least_squares.h"
+#include "mechanical/fit/frequency_scan.h"
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>

@@ -1,60 +1,16 @@
 #include "mechanical/fit/fourier_basis.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <unsupported/Eigen/FFT>
 
 namespace flightwatt::mechanical {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// Cells of the grid that a sample reaches on each side; 12 at twofold oversampling give about 12 digits.
-constexpr std::size_t reach = 12;
-
-/// Samples spread on one turn of the circle, its angle being step * tau. Real part: weights; imaginary part:
-/// values. One complex transform then serves both.
-struct SpreadGrid {
-    std::vector<Complex> cells;
-    double width = 0.0;  ///< the Gaussian is exp(-angle^2 / (4 width))
-};
-
-SpreadGrid spread(const PhaseSamples& samples, double step_rad, std::size_t count) {
-    // Modes run from -count to count; twice as many cells keep the Gaussian's images apart.
-    const std::size_t cells = std::bit_ceil(std::max<std::size_t>(4 * count, 4 * reach));
-    const double modes = 2.0 * static_cast<double>(count);
-    const double oversampling = static_cast<double>(cells) / modes;
-    const double cell = 2.0 * std::numbers::pi / static_cast<double>(cells);
-
-    SpreadGrid grid;
-    grid.cells.assign(cells, Complex(0.0, 0.0));
-    grid.width = std::numbers::pi * static_cast<double>(reach) / (modes * modes * oversampling * (oversampling - 0.5));
-    std::array<double, 2 * reach> fixed_factor{};  // exp(-(offset cell)^2 / (4 width))
-    for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
-        const double offset = (static_cast<double>(k) - static_cast<double>(reach - 1)) * cell;
-        fixed_factor[k] = std::exp(-offset * offset / (4.0 * grid.width));
-    }
-    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
-        const double angle = step_rad * samples.tau[i];
-        const auto nearest = static_cast<std::size_t>(angle / cell);
-        const double rest = angle - static_cast<double>(nearest) * cell;
-        const double ratio = std::exp(rest * cell / (2.0 * grid.width));
-        double factor = std::exp(-rest * rest / (4.0 * grid.width)) * std::pow(ratio, 1.0 - static_cast<double>(reach));
-        const Complex sample(1.0, samples.power_w[i]);
-        for (std::size_t k = 0; k < fixed_factor.size(); ++k) {
-            grid.cells[(nearest + cells + k - (reach - 1)) & (cells - 1)] += sample * (factor * fixed_factor[k]);
-            factor *= ratio;
-        }
-    }
-    return grid;
-}
 
 /// A pivot below this fraction of its diagonal is rounding: the sums are good to 11 digits.
 constexpr double min_pivot = 1e-9;
@@ -141,38 +97,21 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
     return fit;
 }
 
-TrigonometricSums sum_directly(const PhaseSamples& samples, double step_rad, std::size_t count) {
+TrigonometricSums trigonometric_sums(const PhaseSamples& samples, double step_rad, std::size_t count) {
     TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
-    for (std::size_t i = 0; i < samples.tau.size(); ++i) {
-        const double angle = step_rad * samples.tau[i];
-        const Complex turn(std::cos(angle), std::sin(angle));
-        Complex power(1.0, 0.0);
-        for (std::size_t m = 0; m < count; ++m) {
-            sums.weight[m] += power;
-            sums.value[m] += samples.power_w[i] * power;
-            power *= turn;
-        }
-    }
-    return sums;
-}
-
-TrigonometricSums sum_by_fft(const PhaseSamples& samples, double step_rad, std::size_t count) {
-    const SpreadGrid grid = spread(samples, step_rad, count);
-    const std::size_t cells = grid.cells.size();
-    std::vector<Complex> modes;
-    thread_local Eigen::FFT<double> fft;  // which remembers its factors
-    fft.fwd(modes, grid.cells);
-
-    TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
-    const double scale = std::sqrt(std::numbers::pi / grid.width) / static_cast<double>(cells);
+    const Eigen::ArrayXd angle_rad = step_rad * as_vector(samples.tau).array();
+    const Eigen::ArrayXd power_w = as_vector(samples.power_w);
+    const Eigen::ArrayXd step_cos = angle_rad.cos();
+    const Eigen::ArrayXd step_sin = angle_rad.sin();
+    Eigen::ArrayXd cos_m = Eigen::ArrayXd::Ones(angle_rad.size());
+    Eigen::ArrayXd sin_m = Eigen::ArrayXd::Zero(angle_rad.size());
+    Eigen::ArrayXd turned(angle_rad.size());
     for (std::size_t m = 0; m < count; ++m) {
-        // fwd has exp(-i m angle): conjugate. Real and imaginary input part from the modes m and -m.
-        const Complex forward = modes[m];
-        const Complex mirrored = std::conj(modes[(cells - m) & (cells - 1)]);
-        const double index = static_cast<double>(m);
-        const double deconvolution = scale * std::exp(index * index * grid.width);
-        sums.weight[m] = deconvolution * std::conj(0.5 * (forward + mirrored));
-        sums.value[m] = deconvolution * std::conj(Complex(0.0, -0.5) * (forward - mirrored));
+        sums.weight[m] = {cos_m.sum(), sin_m.sum()};
+        sums.value[m] = {(power_w * cos_m).sum(), (power_w * sin_m).sum()};
+        turned = cos_m * step_cos - sin_m * step_sin;
+        sin_m = sin_m * step_cos + cos_m * step_sin;
+        cos_m.swap(turned);
     }
     return sums;
 }
@@ -202,7 +141,7 @@ double explained_square_sum(const TrigonometricSums& sums, std::size_t stride, i
 double projected_square_sum(std::span<const PhaseSamples> flights, int order, double theta_rad) {
     double sum = 0.0;
     for (const auto& flight : flights) {
-        const auto sums = sum_directly(flight, theta_rad, 2 * static_cast<std::size_t>(order) + 1);
+        const auto sums = trigonometric_sums(flight, theta_rad, 2 * static_cast<std::size_t>(order) + 1);
         const double total = as_vector(flight.power_w).squaredNorm();
         sum += std::max(0.0, total - explained_square_sum(sums, 1, order));
     }

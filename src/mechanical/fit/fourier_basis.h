@@ -47,13 +47,9 @@ struct TrigonometricSums {
     std::vector<std::complex<double>> value;
 };
 
-/// The sums for m = 0 .. count - 1, sample by sample: samples x count operations, exact to rounding.
-TrigonometricSums sum_directly(const PhaseSamples& samples, double step_rad, std::size_t count);
-
-/// The same, all at once: the samples are spread on a fine grid with a Gaussian, transformed by FFT, and the
-/// Gaussian divided out (Greengard and Lee, SIAM Review 46, 2004). Relative to the sum of absolute values the
+/// Returns the sums for m = 0 .. count - 1, in samples x count operations. Relative to the sum of absolute values their
 /// error is below 1e-11.
-TrigonometricSums sum_by_fft(const PhaseSamples& samples, double step_rad, std::size_t count);
+TrigonometricSums trigonometric_sums(const PhaseSamples& samples, double step_rad, std::size_t count);
 
 /// The sum of squares that the best series of that order at theta = stride * step explains. Needs the sums up to
 /// m = 2 * order * stride. Directions of the basis within rounding of the normal equations do not count: near-collinear

@@ -115,9 +115,9 @@ PhaseSamples scattered_samples(std::size_t count, unsigned seed) {
     return samples;
 }
 
-TEST(TrigonometricSums, DirectSumsAreTheSums) {
+TEST(TrigonometricSums, AreTheSums) {
     const PhaseSamples samples{"", 1.0, {0.0, 0.25, 0.9}, {1.0, -2.0, 0.5}};
-    const auto sums = sum_directly(samples, 1.7, 9);
+    const auto sums = trigonometric_sums(samples, 1.7, 9);
     for (std::size_t m = 0; m < 9; ++m) {
         std::complex<double> weight = 0.0;
         std::complex<double> value = 0.0;
@@ -131,20 +131,15 @@ TEST(TrigonometricSums, DirectSumsAreTheSums) {
     }
 }
 
-TEST(TrigonometricSums, FftSumsAreTheDirectSums) {
-    for (const double step_rad : {0.05, 1.0 / 3.0, 1.0, 9.0}) {
-        for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{100}, std::size_t{5000}}) {
-            const auto samples = scattered_samples(300, 7);
-            const auto direct = sum_directly(samples, step_rad, count);
-            const auto fast = sum_by_fft(samples, step_rad, count);
-            ASSERT_EQ(fast.weight.size(), count);
-            double worst = 0.0;
-            for (std::size_t m = 0; m < count; ++m) {
-                worst = std::max(worst, std::abs(fast.weight[m] - direct.weight[m]));
-                worst = std::max(worst, std::abs(fast.value[m] - direct.value[m]));
-            }
-            EXPECT_LT(worst / 300.0, 1e-11) << "step " << step_rad << ", " << count << " sums";
-        }
+TEST(TrigonometricSums, KeepElevenDigitsOverAWholeScan) {
+    const auto samples = scattered_samples(300, 7);
+    constexpr std::size_t count = 14000;
+    const auto sums = trigonometric_sums(samples, 1.0 / 3.0, count);
+    for (std::size_t m = 1; m < count; m += 331) {
+        std::complex<double> value = 0.0;
+        for (std::size_t i = 0; i < samples.tau.size(); ++i)
+            value += samples.power_w[i] * std::polar(1.0, static_cast<double>(m) / 3.0 * samples.tau[i]);
+        EXPECT_LT(std::abs(sums.value[m] - value) / 300.0, 1e-11) << m;
     }
 }
 
@@ -170,9 +165,9 @@ TEST(ProjectedFit, LeavesWhatQrLeaves) {
 
 TEST(ProjectedFit, AStrideIsAMultipleOfTheStep) {
     const auto samples = test::centred(test::record_flights(flight::Phase::landing, 1, 0.1, 2).front());
-    const auto sums = sum_directly(samples, 0.5, 2 * 3 * 20 + 1);
+    const auto sums = trigonometric_sums(samples, 0.5, 2 * 3 * 20 + 1);
     for (const std::size_t stride : {std::size_t{7}, std::size_t{13}, std::size_t{20}}) {
-        const auto own = sum_directly(samples, 0.5 * static_cast<double>(stride), 7);
+        const auto own = trigonometric_sums(samples, 0.5 * static_cast<double>(stride), 7);
         EXPECT_NEAR(explained_square_sum(sums, stride, 3), explained_square_sum(own, 1, 3), 1e-9);
     }
 }
@@ -186,7 +181,7 @@ TEST(ProjectedFit, CollinearColumnsExplainNothingTwice) {
         samples.power_w.push_back(i % 3 == 0 ? 1.0 : -0.5);
         total += samples.power_w.back() * samples.power_w.back();
     }
-    const auto sums = sum_directly(samples, 4.0, 7);
+    const auto sums = trigonometric_sums(samples, 4.0, 7);
     EXPECT_NEAR(explained_square_sum(sums, 1, 3), total, 1e-6 * total);
 }
 
