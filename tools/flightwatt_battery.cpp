@@ -1,5 +1,6 @@
 // flightwatt battery: flights to the battery that they were flown on.
 
+#include "battery/battery_toml.h"
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"

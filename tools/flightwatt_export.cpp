@@ -2,6 +2,7 @@
 
 #include "base/input_file.h"
 #include "base/units.h"
+#include "battery/battery_toml.h"
 #include "cli/options.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"

@@ -1,6 +1,7 @@
 // A mission file to begin with: every key explained, made for the files that it names.
 
 #include "battery/battery.h"
+#include "battery/battery_toml.h"
 #include "cli/output/mission_output.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"

@@ -1,10 +1,8 @@
 #pragma once
 
 #include "base/statistics.h"
-#include "base/toml_reader.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,10 +96,6 @@ double internal_current_a(const Battery& battery, double power_w, const BatteryS
 /// The same for the power or the limit, whichever is less.
 double limited_current_a(const Battery& battery, double power_w, const BatteryState& state = {});
 
-/// Reads a battery (docs/formats.md). Throws InputError for missing or unknown keys, and impossible values.
-Battery read_battery(const std::filesystem::path& path);
-Battery battery_from(const TomlTable& table);
-
 /// The battery with the capacity and the curve that its flights indicate, where its own capacity is outside of their
 /// 95 % interval; else none.
 std::optional<Battery> estimated_by_flights(const Battery& battery);
@@ -112,8 +106,5 @@ std::string capacity_warning(const Battery& battery);
 /// Implausible values, a line each: a full voltage of less than 2.5 V or of more than 14 LiPo cells (60 V), a capacity
 /// of less than 0.05 Ah, a power limit below 1 W; and capacity_warning.
 std::vector<std::string> battery_warnings(const Battery& battery);
-
-/// The battery as read_battery reads it.
-std::string to_toml(const Battery& battery);
 
 }  // namespace flightwatt::battery

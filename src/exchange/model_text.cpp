@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "base/units.h"
+#include "battery/battery_toml.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
+#include "base/toml_fields.h"
 #include "mechanical/mechanical_model.h"
-#include "mechanical/toml/toml_fields.h"
 
 #include <algorithm>
 #include <cmath>

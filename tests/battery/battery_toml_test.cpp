@@ -1,6 +1,7 @@
 // Battery files.
 
-#include "battery/battery.h"
+#include "battery/battery_toml.h"
+
 #include "helpers/rejected.h"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 #include "battery/identification.h"
 
 #include "base/error.h"
+#include "battery/battery_toml.h"
 #include "flight/load_flight.h"
 #include "helpers/battery_coverage.h"
 #include "helpers/rejected.h"

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "battery/battery.h"
+#include "battery/battery_toml.h"
 #include "compute/profile_reader.h"
 #include "helpers/document.h"
 #include "helpers/test_paths.h"

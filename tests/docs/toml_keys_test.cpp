@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
 #include "battery/battery.h"
+#include "battery/battery_toml.h"
 #include "compute/profile_specification.h"
 #include "flight/column_map.h"
 #include "flight/series_file.h"

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/number.h"
+#include "battery/battery_toml.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 

@@ -1,6 +1,7 @@
 // A battery.
 
 #include "battery/battery.h"
+#include "battery/battery_toml.h"
 
 #include "fuzz/fuzz_target.h"
 

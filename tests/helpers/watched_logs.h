@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/atomic_file.h"
+#include "battery/battery_toml.h"
 #include "flight/load_flight.h"
 #include "flight/select.h"
 #include "helpers/flight_progress.h"

@@ -1,6 +1,7 @@
 #include "live/predictor.h"
 
 #include "base/atomic_file.h"
+#include "battery/battery_toml.h"
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"

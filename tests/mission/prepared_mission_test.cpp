@@ -1,5 +1,6 @@
 #include "mission/prepared_mission.h"
 
+#include "battery/battery_toml.h"
 #include "helpers/paper_missions.h"
 #include "mission/plan.h"
 

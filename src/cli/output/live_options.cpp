@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "battery/battery_toml.h"
 #include "cli/output/mission_output.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"

@@ -1,6 +1,7 @@
 #include "live/predictor.h"
 
 #include "base/error.h"
+#include "battery/battery_toml.h"
 #include "live/live_flight.h"
 #include "live/prediction.h"
 #include "mission/mission_file.h"

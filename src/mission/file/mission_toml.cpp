@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "battery/battery_toml.h"
 #include "compute/profile_reader.h"
 #include "mission/file/mission_tables.h"
 #include "mission/mission_file.h"

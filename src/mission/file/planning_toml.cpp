@@ -1,4 +1,5 @@
 #include "base/toml_reader.h"
+#include "battery/battery_toml.h"
 #include "mission/file/mission_tables.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/text.h"
+#include "battery/battery_toml.h"
 #include "compute/compute_model.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"

@@ -12,7 +12,7 @@
 
 #include <fmt/ranges.h>
 
-namespace flightwatt::mechanical {
+namespace flightwatt {
 
 /// The layout of a table that is written.
 enum class TomlLayout {
@@ -114,4 +114,4 @@ class TomlFields {
     std::vector<std::string> lines_;
 };
 
-}  // namespace flightwatt::mechanical
+}  // namespace flightwatt
