@@ -1,13 +1,13 @@
 #include "node_predictor.h"
 
 #include "base/units.h"
-#include "live/predictor.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include <flightwatt/predictor.h>
 #include <nlohmann/json.hpp>
 
 namespace flightwatt::ros {

@@ -3,7 +3,6 @@
 #include "flight/flight_phases.h"
 #include "live/live_schedule.h"
 #include "live/prediction.h"
-#include "live/predictor.h"
 #include "live/sources.h"
 #include "telemetry/log_configuration.h"
 
@@ -15,6 +14,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <flightwatt/predictor.h>
 
 namespace flightwatt::live {
 

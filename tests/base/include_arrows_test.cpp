@@ -47,7 +47,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
     return layout;
 }
 
-constexpr std::size_t most_public_headers = 17;
+constexpr std::size_t most_public_headers = 18;
 
 struct IncludeLine {
     std::filesystem::path file;  ///< below the project's folder
@@ -203,6 +203,9 @@ TEST(IncludeArrows, LeadToEachPublicHeaderFromOutsideOfItsModule) {
 
 TEST(IncludeArrows, AModuleHasFewPublicHeaders) {
     std::map<std::string, std::size_t> headers;
+    // The headers of src/library are those that are installed.
+    for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "include/flightwatt"))
+        headers["library"] += entry.path().extension() == ".h";
     const auto src = test::source_dir() / "src";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(src)) {
         const auto path = entry.path().lexically_relative(src);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Installs the library, moves the tree, builds examples/live_predictor against it, and sets what it says of logs beside
-flightwatt watch --json and flightwatt predict.
+"""Installs the library, moves the tree, builds examples/ against it, and sets what they print beside the programs: of
+live_predictor beside flightwatt watch --json and predict, of the others beside segment, fit, battery and simulate.
 
 usage: installed_test.py SOURCE BUILD FOLDER [LOG.data MODEL.toml BATTERY.toml REMAINING_S]...
 """
@@ -28,7 +28,7 @@ def run(command, **options):
 
 
 def installed(build, folder):
-    """A prefix that was moved after the installation."""
+    """A prefix that was moved after the installation, with no other headers than those of include/."""
     shutil.rmtree(folder, ignore_errors=True)
     run(["cmake", "--install", build, "--component", "library", "--prefix", folder / "first"])
     (folder / "first").rename(folder / "moved")
@@ -36,16 +36,19 @@ def installed(build, folder):
         for mine in (str(build), str(folder / "first")):
             if mine in path.read_text():
                 sys.exit(f"{path} names {mine}")
+    headers = {path.name for path in (folder / "moved").rglob("*.h")}
+    if headers != {f"{name}.h" for name in ("log", "flight", "model", "battery", "mission", "predictor")}:
+        sys.exit(f"installed headers: {sorted(headers)}")
     return folder / "moved"
 
 
 def built(source, prefix, folder):
     example = folder / "example"
     compiler = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    run(["cmake", "-G", "Ninja", "-S", source / "examples/live_predictor", "-B", example, "-DCMAKE_BUILD_TYPE=Release",
+    run(["cmake", "-G", "Ninja", "-S", source / "examples", "-B", example, "-DCMAKE_BUILD_TYPE=Release",
          f"-DCMAKE_PREFIX_PATH={prefix}", *compiler])
     run(["cmake", "--build", example])
-    return example / "live_predictor"
+    return example
 
 
 def same(a, b):
@@ -89,12 +92,51 @@ def compare(example, build, log, model, battery, remaining_s):
     print(f"{Path(log).name}: {len(lines)} predictions as watch and predict say them")
 
 
+def compare_phases(examples, program, log):
+    """Energies of read_log beside those of segment."""
+    printed = re.findall(r"^  (takeoff|cruise|landing) (\S+) s (\S+) Wh (\S+) W", run([examples / "read_log", log]), re.M)
+    segmented = json.loads(run([program, "segment", log, "--json"]))["flights"][0]["sorties"]
+    expected = [(phase["phase"], phase["duration_s"], phase["energy_wh"], phase["mean_power_w"])
+                for sortie in segmented for phase in sortie["phases"]]
+    if [line[0] for line in printed] != [phase[0] for phase in expected] or len(expected) != 3:
+        sys.exit(f"read_log has {printed}, segment {expected}")
+    for line, phase in zip(printed, expected):
+        if not all(map(same, line[1:], phase[1:])):
+            sys.exit(f"read_log has {line}, segment {phase}")
+
+
+def compare_files(examples, program, logs, folder):
+    """What fit_model and identify_pack write beside the files of fit and battery."""
+    run([examples / "fit_model", folder / "m.toml", *logs])
+    run([program, "fit", *logs, "--name", "fitted", "-o", folder / "fit.toml"])
+    run([examples / "identify_pack", folder / "p.toml", "1.3", *logs])
+    run([program, "battery", *logs, "--capacity", "1.3", "--name", "identified", "-o", folder / "battery.toml"])
+    for own, theirs in (("m.toml", "fit.toml"), ("p.toml", "battery.toml")):
+        own_lines, lines = ([line for line in (folder / name).read_text().splitlines() if not line.startswith("#")]
+                            for name in (own, theirs))
+        if own_lines != lines:
+            sys.exit(f"{own} and {theirs} differ: {[pair for pair in zip(own_lines, lines) if pair[0] != pair[1]][:3]}")
+
+
+def compare_mission(examples, program, mission):
+    """The landing of simulate_mission beside simulate's."""
+    left, energy_wh = re.search(r": (\S+) % left after \S+ s and (\S+) Wh", run([examples / "simulate_mission", mission])).groups()
+    expected = json.loads(run([program, "simulate", mission, "--json"]))
+    if not same(left, expected["final_soc_percent"]) or not same(energy_wh, expected["energy_wh"]):
+        sys.exit(f"simulate_mission has {left} % and {energy_wh} Wh, simulate {expected}")
+
+
 def main():
     source, build, folder = (Path(word) for word in sys.argv[1:4])
     os.environ.setdefault("LC_ALL", "C.UTF-8")
-    example = built(source, installed(build, folder), folder)
+    examples = built(source, installed(build, folder), folder)
+    program = build / "bin/flightwatt"
+    logs = sorted((source / "logs").glob("*.data"))
+    compare_phases(examples, program, logs[0])
+    compare_files(examples, program, logs, folder)
+    compare_mission(examples, program, source / "missions/paper/adaptive.toml")
     for i in range(4, len(sys.argv), 4):
-        compare(example, build, *sys.argv[i:i + 4])
+        compare(examples / "live_predictor", build, *sys.argv[i:i + 4])
 
 
 if __name__ == "__main__":

@@ -3,8 +3,6 @@
 // Counts what operator new is asked for after the start. Exit code 1 where a push is refused, or where a look allocates
 // more often than ever was seen.
 
-#include "live/predictor.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <flightwatt/predictor.h>
 #include <malloc.h>
 
 namespace {

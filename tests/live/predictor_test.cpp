@@ -1,4 +1,4 @@
-#include "live/predictor.h"
+#include <flightwatt/predictor.h>
 
 #include "base/atomic_file.h"
 #include "battery/battery_toml.h"
@@ -230,7 +230,7 @@ TEST(Predictor, SaysWhatIsWrongInsteadOfThrowing) {
 }
 
 TEST(Predictor, IncludesTheStandardLibraryAlone) {
-    std::istringstream header(read_file(test::source_dir() / "src/live/predictor.h"));
+    std::istringstream header(read_file(test::source_dir() / "include/flightwatt/predictor.h"));
     for (std::string line; std::getline(header, line);) {
         if (!line.starts_with("#include")) continue;
         EXPECT_THAT(line, HasSubstr("<"));

@@ -1,4 +1,4 @@
-#include "live/predictor.h"
+#include <flightwatt/predictor.h>
 
 #include "base/error.h"
 #include "battery/battery_toml.h"

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <string>
 
-#include <flightwatt/live/predictor.h>
+#include <flightwatt/predictor.h>
 
 namespace {
 
