@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Runs the workflow on a real Slurm of two nodes on this machine, kills one of them and the controller on the way, and
-compares with one machine's batch: cluster_test [--short] [--logs N] [--programs BIN].
+compares with one machine's batch: slurm_test [--short] [--logs N] [--programs BIN].
 
 Its munge, slurmctld and two slurmd are this run's own, in a scratch folder; no service of the system is touched, and
 nothing stays. Needs root and scripts/install_dependencies cluster; ends with 77 (skipped) where it cannot start."""
@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 MODEL = os.path.join(ROOT, "fits/mechanical/opterra-table1.toml")
 MISSIONS = os.path.join(ROOT, "missions/paper")
 SKIPPED = 77
@@ -56,7 +56,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def say(text):
-    print(f"cluster_test: {text}", file=sys.stderr, flush=True)
+    print(f"slurm_test: {text}", file=sys.stderr, flush=True)
 
 
 def skip(why):
