@@ -147,7 +147,7 @@ Document read_document(const std::filesystem::path& path) {
 std::vector<std::filesystem::path> all_documents() {
     const auto root = source_dir();
     std::vector<std::filesystem::path> found{root / "logs" / "README.md"};
-    for (const auto& folder : {root, root / "docs"}) {
+    for (const auto& folder : {root, root / "docs", root / "docs" / "reference"}) {
         for (const auto& entry : std::filesystem::directory_iterator(folder))
             if (entry.path().extension() == ".md") found.push_back(entry.path());
     }
