@@ -391,7 +391,7 @@ def end_once(*_):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--short", action="store_true", help="60 logs, and only a node is killed: what CTest runs")
+    parser.add_argument("--short", action="store_true", help="60 logs, and only a node is killed")
     parser.add_argument("--logs", type=int, default=2000, metavar="N", help="so many logs (2000)")
     parser.add_argument("--programs", default=os.path.join(ROOT, "build/release/bin"), metavar="BIN")
     arguments = parser.parse_args()
