@@ -105,7 +105,8 @@ Totals totals_of(const BatchFlights& flights);
 /// A row a sortie or rejected log, of the first logs, with short ids of aircraft.
 TextTable flights_table(const BatchFlights& flights, std::size_t max_logs, const ShortIds& short_ids = {});
 
-/// OUT/flights.csv in chunks, as long as `flights` exists: a row a phase, and one a rejected log (docs/formats.md).
+/// OUT/flights.csv in chunks, as long as `flights` exists: a row a phase, and one a rejected log
+/// (docs/reference/batch.md).
 TextWriter catalogue_csv(const BatchFlights& flights);
 /// Its columns.
 Json catalogue_schema();

@@ -15,7 +15,7 @@
 #include <vector>
 
 /// The fields of a record are listed once, by `Fields<R> record_fields(const R*)` in the namespace of R: JSON, its
-/// schema, tables, CSV and the tables of docs/formats.md follow from that list.
+/// schema, tables, CSV and the pages of docs/reference follow from that list.
 namespace flightwatt {
 
 /// A field without its value.

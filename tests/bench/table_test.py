@@ -116,6 +116,6 @@ class Refusals(unittest.TestCase):
 
 
 if not os.path.isdir(os.path.join(ROOT, "web/node_modules/vega")):
-    print("skipped: web/node_modules is missing; scripts/install_dependencies installs it", file=sys.stderr)
+    print("skipped: web/node_modules is missing; scripts/install_dependencies build installs it", file=sys.stderr)
     sys.exit(77)
 unittest.main(argv=sys.argv[:1])

@@ -17,7 +17,6 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 REFERENCE = os.path.join(ROOT, "scripts/reference")
 PROGRAMS = sys.argv.pop(1)
 
-sys.path.insert(0, os.path.join(ROOT, "scripts"))
 loader = importlib.machinery.SourceFileLoader("reference", REFERENCE)
 reference = importlib.util.module_from_spec(importlib.util.spec_from_loader("reference", loader))
 loader.exec_module(reference)

@@ -1,4 +1,4 @@
-// Columns and keys of the files that the programs write, held to docs/formats.md.
+// Columns of the files that the programs write, held to docs/formats.md.
 
 #include "base/atomic_file.h"
 #include "helpers/document.h"
@@ -7,13 +7,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <regex>
-#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace flightwatt::test {
 namespace {
@@ -102,37 +99,6 @@ TEST(WrittenColumns, AreDocumented) {
     expect_columns(folder / "profiles" / "detection.csv", "Power profile");
     output_of("synthesize", {published, "--flights", "1", "--cruise", "60", "--truth", "-o", "made"}, folder);
     expect_columns(folder / "made" / "opterra-table1_synthetic_01.truth.csv", "Truth");
-}
-
-/// Calls `found` for each value of a JSON text, with its path: "phases.takeoff.cos_w[]".
-void visit(const nlohmann::json& json, const std::string& path, const std::function<void(const std::string&)>& found) {
-    if (json.is_object()) {
-        for (const auto& [key, value] : json.items()) visit(value, path.empty() ? key : path + "." + key, found);
-    } else if (json.is_array()) {
-        for (const auto& value : json) visit(value, path, found);
-    } else {
-        found(path);
-    }
-}
-
-void expect_keys(const std::filesystem::path& file, const std::string& section) {
-    std::set<std::string> paths;
-    visit(nlohmann::json::parse(read_file(file)), "", [&](const std::string& path) { paths.insert(path); });
-    EXPECT_GT(paths.size(), 1U) << file;
-    for (const auto& path : paths) {
-        const bool documented = std::any_of(formats().begin(), formats().end(), [&](const DocumentedKey& key) {
-            return key.section == section && path_matches(key.key, path);
-        });
-        EXPECT_TRUE(documented) << file << ": '" << path << "' is not in docs/formats.md, " << section;
-    }
-}
-
-TEST(WrittenKeys, OfABatchAreDocumented) {
-    const auto folder = scratch_dir();
-    output_of("batch", {log_file, "-o", "out"}, folder);
-    expect_keys(folder / "out" / "flights" / "opterra_synthetic_01.record.json", "Record");
-    expect_keys(folder / "out" / "fit.json", "Fit of a batch");
-    expect_keys(folder / "out" / "batch.json", "Manifest");
 }
 
 }  // namespace

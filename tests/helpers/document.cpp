@@ -103,12 +103,12 @@ class Reader {
 
     void row(const std::string& line) {
         const auto cells = cells_of(line);
-        if (cells.size() == 5 && (cells[0] == "key" || cells[0] == "column")) {
+        if (cells.size() == 4 && (cells[0] == "key" || cells[0] == "column")) {
             in_key_table_ = true;
             is_column_ = cells[0] == "column";
         } else if (in_key_table_ && !cells[0].starts_with("---")) {
             for (const auto& key : words_in_code(cells[0]))
-                document_.keys.push_back({section_, tables_, key, cells[2], cells[3], is_column_, line_});
+                document_.keys.push_back({section_, tables_, key, cells[1], cells[2], is_column_, line_});
         }
     }
 
@@ -147,7 +147,7 @@ Document read_document(const std::filesystem::path& path) {
 std::vector<std::filesystem::path> all_documents() {
     const auto root = source_dir();
     std::vector<std::filesystem::path> found{root / "logs" / "README.md"};
-    for (const auto& folder : {root, root / "docs"}) {
+    for (const auto& folder : {root, root / "docs", root / "docs" / "reference"}) {
         for (const auto& entry : std::filesystem::directory_iterator(folder))
             if (entry.path().extension() == ".md") found.push_back(entry.path());
     }

@@ -6,12 +6,12 @@
 
 namespace flightwatt::test {
 
-/// One key or column of a table "| key | type | unit | default | meaning |".
+/// One key or column of a table "| key | type or unit | default | meaning |".
 struct DocumentedKey {
     std::string section;              ///< heading of the second level above it: "Mission file"
     std::vector<std::string> tables;  ///< what the heading of the third level names in `...`: "plan.levels"
     std::string key;
-    std::string unit;
+    std::string unit;        ///< of a number, else the type
     std::string fallback;    ///< the column "default"
     bool is_column = false;  ///< of a table, and not a key
     std::size_t line = 0;
@@ -42,7 +42,7 @@ struct Document {
 
 Document read_document(const std::filesystem::path& path);
 
-/// All pages of the project: README.md and the others of its folder, docs/ and logs/README.md.
+/// All pages of the project: README.md and the others of its folder, docs/, docs/reference/ and logs/README.md.
 std::vector<std::filesystem::path> all_documents();
 
 /// Whether a path like "components.detection.qos" is meant by "components.NAME.qos": words in capitals stand

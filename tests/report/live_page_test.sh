@@ -8,7 +8,7 @@ scratch=$3
 source=$(cd "$(dirname "$0")/../.." && pwd)
 
 skip() {
-    echo "skipped: $1 is missing; scripts/install_dependencies installs it" >&2
+    echo "skipped: $1 is missing; scripts/install_dependencies build tests installs it" >&2
     exit 77
 }
 command -v node >/dev/null || skip node

@@ -28,7 +28,7 @@ TEST(DataFile, ReadsEveryCompression) {
     for (const std::string tool : {"gzip", "bzip2", "xz", "zstd"}) {
         const auto packed = tool + ".data";
         const auto result = test::run_shell(tool + " -c x.data > " + packed, folder);
-        ASSERT_EQ(result.code, 0) << result.err << "scripts/install_dependencies installs it";
+        ASSERT_EQ(result.code, 0) << result.err << "scripts/install_dependencies tests installs it";
         EXPECT_EQ(read_data_file(folder / packed), text) << tool;
     }
 }

@@ -33,7 +33,7 @@ std::string replay_remark();
 /// All tables and sentences.
 std::string replay_text(std::span<const mission::Replay> replays, const Screen& screen);
 
-/// flight,mission,schedule,... (docs/formats.md), one row a flight, mission and schedule.
+/// flight,mission,schedule,... (docs/reference/replay.md), one row a flight, mission and schedule.
 std::string replay_csv(std::span<const mission::Replay> replays);
 
 }  // namespace flightwatt::cli

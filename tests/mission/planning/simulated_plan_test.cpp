@@ -101,7 +101,7 @@ TEST(SimulatedPlan, IsTheBestOfAllSimulatedSchedules) {
     EXPECT_GE(feasible, 5);
 }
 
-/// Of small_missions.h, beside all schedules; scripts/bench_planning takes many.
+/// Of small_missions.h, beside all schedules; studies/planning takes many.
 class SmallMissions : public testing::TestWithParam<unsigned> {};
 
 TEST_P(SmallMissions, HaveNoBetterScheduleThanThePlan) {

@@ -57,7 +57,7 @@ TEST(LandingDistribution, RefusesProbabilitiesThatAreNone) {
     }
 }
 
-/// The models know nothing of the aircraft but their flights. scripts/bench_probability new-flights has more.
+/// The models know nothing of the aircraft but their flights. studies/probability new-flights has more.
 TEST(LandingDistribution, KeepsItsPromiseInNewFlights) {
     const auto kept = test::keep_promises({.flights = 3, .new_flights = 40}, 120, 6999, 3);
     EXPECT_GT(kept.share, 0.93);

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the workflow on a real Slurm of two nodes on this machine, kills one of them and the controller on the way, and
-compares with one machine's batch: cluster_test [--short] [--logs N] [--programs BIN].
+compares with one machine's batch: slurm_test [--short] [--logs N] [--programs BIN].
 
 Its munge, slurmctld and two slurmd are this run's own, in a scratch folder; no service of the system is touched, and
-nothing stays. Needs root and scripts/install_dependencies --cluster; ends with 77 (skipped) where it cannot start."""
+nothing stays. Needs root and scripts/install_dependencies cluster; ends with 77 (skipped) where it cannot start."""
 
 import argparse
 import os
@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 MODEL = os.path.join(ROOT, "fits/mechanical/opterra-table1.toml")
 MISSIONS = os.path.join(ROOT, "missions/paper")
 SKIPPED = 77
@@ -56,7 +56,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def say(text):
-    print(f"cluster_test: {text}", file=sys.stderr, flush=True)
+    print(f"slurm_test: {text}", file=sys.stderr, flush=True)
 
 
 def skip(why):
@@ -391,7 +391,7 @@ def end_once(*_):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--short", action="store_true", help="60 logs, and only a node is killed: what CTest runs")
+    parser.add_argument("--short", action="store_true", help="60 logs, and only a node is killed")
     parser.add_argument("--logs", type=int, default=2000, metavar="N", help="so many logs (2000)")
     parser.add_argument("--programs", default=os.path.join(ROOT, "build/release/bin"), metavar="BIN")
     arguments = parser.parse_args()
@@ -399,7 +399,7 @@ def main():
         skip("not root: slurmd runs jobs as their users")
     for program in ("munged", "slurmctld", "slurmd", "sbatch", "snakemake"):
         if not shutil.which(program):
-            skip(f"{program} is missing; scripts/install_dependencies --cluster installs it")
+            skip(f"{program} is missing; scripts/install_dependencies cluster installs it")
     if not os.access(os.path.join(arguments.programs, "flightwatt"), os.X_OK):
         fail(f"no flightwatt in {arguments.programs}; build it with scripts/build release programs")
     # Ctrl-C, CTest's time limit: through the same ends as any failure.

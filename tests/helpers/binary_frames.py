@@ -1,6 +1,4 @@
-"""Binary logs out of text logs, and how they get damaged: as scripts/log_damage.py, of a Log whose `frames` are those of
-its lines. Used by scripts/mutate_logs; scripts/fuzz makes seeds with it.
-"""
+"""Binary logs out of text logs, as SD cards and links hold them. Used by tests/damage, and by scripts/fuzz for seeds."""
 
 import re
 import struct
@@ -8,7 +6,6 @@ import xml.etree.ElementTree
 
 NUMBERS = {"uint8": "B", "int8": "b", "uint16": "H", "int16": "h", "uint32": "I", "int32": "i", "float": "f", "double": "d"}
 TELEMETRY = 1  # the class of what aircraft send
-SECTOR = 512  # bytes: what a card writes at once
 
 
 def wire_messages(definitions):
@@ -117,117 +114,3 @@ def lines_as_defined(lines, own, other):
             fields = [values.get(field, absent_value(kind)) for field, kind in wanted[name][2].items()]
             line = (" ".join(words[:3] + fields) + "\n").encode("latin-1")
         yield line
-
-
-def whole(log, data):
-    """The log is these bytes from now on; their lines are still about what they were."""
-    log.frames = [data]
-
-
-def frames_cut_off(random, log):
-    last = random.randrange(len(log.frames))
-    log.lines = log.lines[: last + 1]
-    frame = log.frames[last]
-    log.frames = log.frames[:last] + [frame[: random.randrange(len(frame) + 1)]]
-
-
-def frames_begun_late(random, log):
-    first = random.randrange(len(log.frames))
-    log.lines = log.lines[first:]
-    frame = log.frames[first]
-    log.frames = [frame[random.randrange(len(frame) + 1) :]] + log.frames[first + 1 :]
-
-
-def frames_flipped(random, log):
-    data = bytearray(b"".join(log.frames))
-    for _ in range(random.choice((1, 10, 100, 1000))):
-        data[random.randrange(len(data))] ^= 1 << random.randrange(8)
-    whole(log, bytes(data))
-
-
-def bytes_of_frames_lost(random, log):
-    data = b"".join(log.frames)
-    for _ in range(random.choice((1, 20, 200))):
-        at = random.randrange(len(data))
-        data = data[:at] + data[at + random.randrange(1, 40) :]
-    whole(log, data)
-
-
-def bytes_between_frames(random, log):
-    data = b"".join(log.frames)
-    for _ in range(random.choice((1, 20, 200))):
-        at = random.randrange(len(data))
-        kinds = (b"\0" * random.randrange(1, 64), b"\x99", b"\x99\x08", random.randbytes(random.randrange(1, 40)))
-        data = data[:at] + random.choice(kinds) + data[at:]
-    whole(log, data)
-
-
-def sectors(random, data):
-    """Some of the card's sectors: where they begin, and where they end."""
-    first = random.randrange(len(data) // SECTOR + 1) * SECTOR
-    return first, first + random.choice((1, 4, 16)) * SECTOR
-
-
-def sectors_zeroed(random, log):
-    data = b"".join(log.frames)
-    for _ in range(random.choice((1, 5))):
-        begin, end = sectors(random, data)
-        data = data[:begin] + bytes(len(data[begin:end])) + data[end:]
-    whole(log, data)
-
-
-def sectors_of_another_file(random, log):
-    data = b"".join(log.frames)
-    begin, end = sectors(random, data)
-    whole(log, data[:begin] + random.randbytes(len(data[begin:end])) + data[end:])
-
-
-def sectors_moved(random, log):
-    data = b"".join(log.frames)
-    begin, end = sectors(random, data)
-    rest = data[:begin] + data[end:]
-    at = random.randrange(len(rest) // SECTOR + 1) * SECTOR
-    whole(log, rest[:at] + data[begin:end] + rest[at:])
-
-
-def sectors_doubled(random, log):
-    data = b"".join(log.frames)
-    begin, end = sectors(random, data)
-    whole(log, data[:end] + data[begin:end] + data[end:])
-
-
-def lengths_changed(random, log):
-    frames = list(log.frames)
-    for _ in range(random.choice((1, 10, 100))):
-        i = random.randrange(len(frames))
-        if frames[i]:
-            frames[i] = frames[i][:1] + bytes([random.randrange(256)]) + frames[i][2:]
-    log.frames = frames
-
-
-def contents_changed(random, log):
-    """A byte of a message, whose checksum is right nevertheless: it came so."""
-    frames = list(log.frames)
-    for _ in range(random.choice((1, 10, 100))):
-        i = random.randrange(len(frames))
-        if frames[i]:
-            frame = bytearray(frames[i])
-            frame[random.randrange(7, len(frame) - 1)] = random.randrange(256)
-            frame[-1] = sum(frame[1:-1]) & 255
-            frames[i] = bytes(frame)
-    log.frames = frames
-
-
-DAMAGES = [
-    frames_cut_off,
-    frames_begun_late,
-    frames_flipped,
-    bytes_of_frames_lost,
-    bytes_between_frames,
-    sectors_zeroed,
-    sectors_of_another_file,
-    sectors_moved,
-    sectors_doubled,
-    lengths_changed,
-    contents_changed,
-]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Damages logs as real ones are damaged, and holds every program that reads logs to its promises.
+"""Damages logs as real ones are damaged, and tests every program that reads logs on them.
 
-    mutate_logs [COUNT] [--binary] [--undamaged] [--only NAME] [--seed N] [--programs FOLDER] [--keep FOLDER] [LOG...]
+    damage_test [COUNT] [--binary] [--undamaged] [--only NAME] [--seed N] [--programs FOLDER] [--keep FOLDER] [LOG...]
 
 With --binary they are written as the SD card of an aircraft writes them, and also damaged as its bytes are: by the
 definitions of their own .log and, where it is, of ../shared/pprzlink, with these as a capture of a link too. COUNT
@@ -14,7 +14,7 @@ is then 1. The same seed (1 if not said) damages the same logs in the same way.
 `start`, `restart` and `follow` are `watch` from a random line on: by its standard input, with a clock that is set back
 in flight, and as it follows a binary log. 2,000 starts over real logs as they are:
 
-    mutate_logs 2000 --undamaged --only start ../shared/flights/20_*.data
+    damage_test 2000 --undamaged --only start ../shared/flights/20_*.data
 """
 
 import argparse
@@ -23,7 +23,6 @@ import concurrent.futures
 import csv
 import glob
 import io
-import json
 import math
 import os
 import random
@@ -31,21 +30,22 @@ import re
 import shlex
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import threading
-import time
 
 sys.dont_write_bytecode = True
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path.insert(0, os.path.join(ROOT, "scripts"))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(ROOT, "tests/helpers"))
 import binary_damage  # noqa: E402
-import log_damage  # noqa: E402
+import binary_frames  # noqa: E402
+import power_damage  # noqa: E402
+import text_damage  # noqa: E402
+from execution import Execution  # noqa: E402
 
-HANG_S = 600.0
 MOST_MEMORY_KB = 1_000_000
 ENERGY_TOLERANCE = 0.05
+TEXT_DAMAGES = text_damage.DAMAGES + power_damage.DAMAGES
 ALLOWED_EXITS = (0, 3, 4)
 COPIES = ("play", "convert")
 MODEL = os.path.join(ROOT, "fits/mechanical/synthetic-wing.toml")
@@ -54,53 +54,9 @@ PPRZLINK = os.path.join(ROOT, "../shared/pprzlink/messages.xml")
 IN_FLIGHT = ("start", "restart", "follow")
 WATCHED_LINES = 3000
 WATCHED_BYTES = 100_000
-SILENT_S = 0.5
 RESTARTS_S = (65.0, 100.0, 200.0, 340.0, 600.0)
 SANITIZED = re.compile(rb"Sanitizer|runtime error:|Assertion .* failed|internal error")
 NOT_A_NUMBER = re.compile(rb"(?<![A-Za-z_])[-+]?(?:nan|inf)(?![A-Za-z_])", re.IGNORECASE)
-
-
-class Execution:
-    """One program on one damaged log: what it printed and how it ended. For `watch -` the log is its standard input."""
-
-    def __init__(self, command, log, folder):
-        self.command = command
-        self.input = log if "-" in command[1:2] else os.devnull
-        begin = time.monotonic()
-        outputs = [os.path.join(folder, name) for name in ("stdout", "stderr")]
-        with open(self.input, "rb") as given, open(outputs[0], "wb") as out, open(outputs[1], "wb") as err:
-            program = subprocess.Popen(command, stdout=out, stderr=err, stdin=given)
-            killer = threading.Timer(HANG_S, program.kill)
-            killer.start()
-            if "--follow" in command:
-                end_when_silent(program.pid, outputs[0])
-            _, status, usage = os.wait4(program.pid, 0)
-            killer.cancel()
-        program.returncode = os.waitstatus_to_exitcode(status)
-        self.seconds = time.monotonic() - begin
-        self.processor_s = usage.ru_utime + usage.ru_stime
-        self.memory_kb = usage.ru_maxrss
-        self.code = program.returncode
-        with open(os.path.join(folder, "stdout"), "rb") as file:
-            self.output = file.read()
-        with open(os.path.join(folder, "stderr"), "rb") as file:
-            self.messages = file.read()
-
-    def warnings(self, folder):
-        """The lines that warn, without the place of the log; beside them rejections, which are no silence either."""
-        lines = self.messages.replace(folder.encode(), b"").splitlines()
-        return {line for line in lines if b"warning:" in line or b"error:" in line or b"rejected" in line}
-
-
-def end_when_silent(pid, output):
-    """Ends a watch that follows a file once it has read all, by the lines of its --json."""
-    while os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
-        with open(output, "rb") as file:
-            lines = file.read().splitlines(keepends=True)
-        if lines and lines[-1].endswith(b"\n") and json.loads(lines[-1]).get("time_since_message_s", 0.0) >= SILENT_S:
-            os.kill(pid, signal.SIGTERM)
-            return
-        time.sleep(0.05)
 
 
 def sorties_of(output):
@@ -140,14 +96,14 @@ def begun_in_flight(name, chance, log):
     if name == "follow":
         data = b"".join(log.frames)
         first = chance.randrange(len(data) + 1)
-        return log_damage.Log([], log.definitions, [data[first : first + WATCHED_BYTES]])
+        return text_damage.Log([], log.definitions, [data[first : first + WATCHED_BYTES]])
     last = chance.randrange(len(log.lines) + 1)
     if name == "start":
-        return log_damage.Log(log.lines[last : last + WATCHED_LINES], log.definitions)
+        return text_damage.Log(log.lines[last : last + WATCHED_LINES], log.definitions)
     again_s = first_time(reversed(log.lines[:last])) - chance.choice(RESTARTS_S)
     again = next((i for i, line in enumerate(log.lines) if time_of(line) >= again_s), 0)
     lines = log.lines[max(0, last - WATCHED_LINES // 2) : last] + log.lines[again : again + WATCHED_LINES // 2]
-    return log_damage.Log(lines, log.definitions)
+    return text_damage.Log(lines, log.definitions)
 
 
 def commands_of(programs, log, folder, is_binary):
@@ -202,15 +158,15 @@ def read_log(path):
         lines = file.read().splitlines(keepends=True)
     configuration = path.removesuffix("data") + "log"
     if not os.path.exists(configuration):
-        return log_damage.Log(lines, None)
+        return text_damage.Log(lines, None)
     with open(configuration, encoding="latin-1", newline="") as file:
-        return log_damage.Log(lines, file.read())
+        return text_damage.Log(lines, file.read())
 
 
 def as_binary(log, version):
     """The log as a card holds it; None where none of its messages is defined."""
-    frames = binary_damage.frames_of(log.lines, log.definitions or "", version)
-    return log_damage.Log(log.lines, log.definitions, frames) if any(frames) else None
+    frames = binary_frames.frames_of(log.lines, log.definitions or "", version)
+    return text_damage.Log(log.lines, log.definitions, frames) if any(frames) else None
 
 
 def as_by_pprzlink(log):
@@ -218,7 +174,7 @@ def as_by_pprzlink(log):
     with open(PPRZLINK, encoding="latin-1", newline="") as file:
         protocol = re.search("<protocol.*</protocol>", file.read(), re.DOTALL).group()
     definitions = re.sub("<protocol.*</protocol>", lambda _: protocol, log.definitions, flags=re.DOTALL)
-    return log_damage.Log(list(binary_damage.lines_as_defined(log.lines, log.definitions, protocol)), definitions)
+    return text_damage.Log(list(binary_frames.lines_as_defined(log.lines, log.definitions, protocol)), definitions)
 
 
 def read_originals(options, most):
@@ -240,9 +196,9 @@ def read_originals(options, most):
 def damaged(original, seed, is_binary):
     """A copy with one damage or two, and their names. Of a binary one half are of its bytes, half of what it holds."""
     chance = random.Random(seed)
-    log = log_damage.Log(list(original.lines), original.definitions)
+    log = text_damage.Log(list(original.lines), original.definitions)
     of_bytes = is_binary and chance.random() < 0.5
-    kinds = chance.sample(binary_damage.DAMAGES if of_bytes else log_damage.DAMAGES, 2 if chance.random() < 0.2 else 1)
+    kinds = chance.sample(binary_damage.DAMAGES if of_bytes else TEXT_DAMAGES, 2 if chance.random() < 0.2 else 1)
     if of_bytes:
         log = as_binary(log, chance.choice((1, 2)))
     for kind in kinds:
@@ -253,8 +209,8 @@ def damaged(original, seed, is_binary):
         # The definitions may be damaged, those that the aircraft was built with were not.
         changed = log.definitions if "definitions" not in "".join(kind.__name__ for kind in kinds) else None
         framing = chance.choice(("card", "link")) if '"TIMESTAMP"' in original.definitions else "card"
-        frames = binary_damage.frames_of(log.lines, changed or original.definitions, chance.choice((1, 2)), framing)
-        log = log_damage.Log(log.lines, log.definitions, frames)
+        frames = binary_frames.frames_of(log.lines, changed or original.definitions, chance.choice((1, 2)), framing)
+        log = text_damage.Log(log.lines, log.definitions, frames)
     return log, "+".join(kind.__name__ for kind in kinds)
 
 
@@ -347,7 +303,7 @@ class Run:
         line = f"seed {seed}: {os.path.basename(path)}, {damage}: {name}: {'; '.join(faults)}"
         with self.lock:
             self.failures.append(line)
-            print(f"mutate_logs: {line}", file=sys.stderr)
+            print(f"damage_test: {line}", file=sys.stderr)
         if self.options.keep:
             kept = os.path.join(self.options.keep, f"{seed}_{name}")
             shutil.copytree(folder, kept, dirs_exist_ok=True)
@@ -385,13 +341,13 @@ def main():
     names = options.names
     rounds = (options.count + len(names) - 1) // len(names)
     if options.binary and not os.path.exists(PPRZLINK):
-        print(f"mutate_logs: no {os.path.relpath(PPRZLINK)}: SKIPPED its definitions", file=sys.stderr)
+        print(f"damage_test: no {os.path.relpath(PPRZLINK)}: SKIPPED its definitions", file=sys.stderr)
     originals = read_originals(options, rounds)
     paths = list(originals)
     references = {path: run.reference_of(log) for path, log in originals.items()}
     flights = sum(bool(reference["sorties"]) for reference in references.values())
     if flights == 0:
-        print(f"mutate_logs: error: none of {len(paths)} logs holds a flight with its energy", file=sys.stderr)
+        print(f"damage_test: error: none of {len(paths)} logs holds a flight with its energy", file=sys.stderr)
         return 1
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as workers:
         jobs = []
@@ -403,7 +359,7 @@ def main():
         for done, job in enumerate(concurrent.futures.as_completed(jobs)):
             job.result()
             if done % 100 == 99 and sys.stderr.isatty():
-                print(f"mutate_logs: {sum(run.executions.values())} of {options.count}", file=sys.stderr)
+                print(f"damage_test: {sum(run.executions.values())} of {options.count}", file=sys.stderr)
     kind = ("undamaged" if options.undamaged else "damaged") + (" binary" if options.binary else "")
     print(f"{sum(run.executions.values())} executions on {rounds} {kind} logs of {len(paths)}, seed {options.seed}")
     print(f"of the {len(paths)}, {flights} hold a flight with its energy")
