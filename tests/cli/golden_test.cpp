@@ -47,7 +47,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 test::Outcome run_command(const std::string& command) {
     const auto folder = test::scratch_dir();
     const auto source = test::source_dir();
-    const auto result = test::run_shell(command, folder, "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source));
+    const auto result = test::run_shell(command, folder,
+                                        "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source) +
+                                            " HAZARDS=" + test::shell_quoted(test::hazards_dir()));
     const auto shown = [&](const std::string& text) {
         // The scratch folder may lie in the source folder, so it goes first.
         return replaced(replaced(text, folder.string(), "SCRATCH"), source.string(), "SOURCE");

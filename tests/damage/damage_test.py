@@ -5,10 +5,10 @@
 
 With --binary they are written as the SD card of an aircraft writes them, and also damaged as its bytes are: by the
 definitions of their own .log and, where it is, of ../shared/pprzlink, with these as a capture of a link too. COUNT
-executions (10,000 if not said) over the logs of logs/, tests/data/hazards/ and, where it is, ../shared/flights,
-or over those that are named. Of every execution: an allowed exit code, no finding of a sanitizer, no hang,
-no more than 1 GB, no NaN in a result, and an energy that lies within 5 % of the undamaged log's or is warned of. Programs are
-those of build/sanitize/bin unless --programs names others. What fails goes to --keep, with its command; the exit code
+executions (10,000 if not said) over the logs of logs/, those of hazards/ of the build and, where it is,
+../shared/flights, or over those that are named. Of every execution: an allowed exit code, no finding of a sanitizer, no
+hang, no more than 1 GB, no NaN in a result, and an energy that lies within 5 % of the undamaged log's or is warned of.
+Programs are those of build/sanitize/bin unless --programs names others. What fails goes to --keep, with its command; the exit code
 is then 1. The same seed (1 if not said) damages the same logs in the same way.
 
 `start`, `restart` and `follow` are `watch` from a random line on: by its standard input, with a clock that is set back
@@ -329,7 +329,8 @@ def read_options():
     if not os.path.exists(os.path.join(options.programs, "flightwatt-segment")):
         parser.error(f"no programs in {options.programs}: build them with scripts/build sanitize")
     if not options.logs:
-        for folder in ("logs", "tests/data/hazards", "../shared/flights"):
+        hazards = os.path.join(options.programs, "../hazards")
+        for folder in ("logs", hazards, "../shared/flights"):
             options.logs += sorted(glob.glob(os.path.join(ROOT, folder, "*.data")))
     return options
 

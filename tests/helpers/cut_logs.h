@@ -74,9 +74,8 @@ inline std::vector<std::filesystem::path> all_logs() {
             if (entry.path().extension() == ".data") logs.push_back(entry.path());
         }
     };
-    for (const auto* folder : {"logs", "tests/data"}) {
-        if (std::filesystem::is_directory(source_dir() / folder)) add(source_dir() / folder);
-    }
+    add(source_dir() / "logs");
+    if (std::filesystem::is_directory(hazards_dir())) add(hazards_dir());
     if (!shared_dir().empty()) add(shared_dir() / "flights");
     std::sort(logs.begin(), logs.end());
     return logs;

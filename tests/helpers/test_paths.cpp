@@ -10,6 +10,8 @@ std::filesystem::path source_dir() { return FLIGHTWATT_SOURCE_DIR; }
 
 std::filesystem::path binary_dir() { return FLIGHTWATT_BINARY_DIR; }
 
+std::filesystem::path hazards_dir() { return binary_dir() / "hazards"; }
+
 std::filesystem::path programs_dir() {
     const char* const named = std::getenv("FLIGHTWATT_PROGRAMS");
     return named != nullptr ? std::filesystem::path(named) : binary_dir() / "bin";

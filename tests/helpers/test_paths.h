@@ -9,6 +9,10 @@ namespace flightwatt::test {
 std::filesystem::path source_dir();
 std::filesystem::path binary_dir();  ///< of this build
 
+/// Returns the folder of a synthetic log for each difficulty of segmentation, which the build makes (tests/CMakeLists.txt):
+/// hazard_01_NAME.data with its phases, hazard_01_NAME.truth.csv.
+std::filesystem::path hazards_dir();
+
 /// Where the programs are: bin/ of this build, or the folder that FLIGHTWATT_PROGRAMS names, where something stands
 /// between (scripts/build_arm64).
 std::filesystem::path programs_dir();

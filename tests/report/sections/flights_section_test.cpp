@@ -12,18 +12,18 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-ReportFlight sample_flight(const std::string& path) {
+ReportFlight sample_flight(const std::filesystem::path& file) {
     ReportFlight flight;
-    flight.data = select_tracks(flight::read_flight(test::source_dir() / (path + ".data")));
+    flight.data = select_tracks(flight::read_flight(file));
     flight.phases = segment(flight.data);
     flight.name = flight.data.flight;
     return flight;
 }
 
 TEST(FlightsSection, NamesEveryReasonOnceWithItsFlights) {
-    auto whole = sample_flight("logs/opterra_synthetic_01");
-    auto one = sample_flight("tests/data/hazards/hazard_01_run-up");
-    auto two = sample_flight("tests/data/hazards/hazard_01_two-sorties");
+    auto whole = sample_flight(test::source_dir() / "logs/opterra_synthetic_01.data");
+    auto one = sample_flight(test::hazards_dir() / "hazard_01_run-up.data");
+    auto two = sample_flight(test::hazards_dir() / "hazard_01_two-sorties.data");
     for (auto* flight : {&one, &two}) {
         flight->unusable_power = "made for <segmentation>";
         flight->exclusions = {flight->name + ": it is excluded: made for <segmentation>"};
@@ -48,7 +48,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 TEST(FlightsSection, CompressesManyFlightsButTheFirst) {
     BatchContent batch;
     auto& flights = batch.flights;
-    flights.assign(20, sample_flight("logs/opterra_synthetic_01"));
+    flights.assign(20, sample_flight(test::source_dir() / "logs/opterra_synthetic_01.data"));
     for (std::size_t f = 0; f < flights.size(); ++f) flights[f].name = "flight_" + std::to_string(f);
     const auto few = flights_section(batch);
     EXPECT_THAT(few.html, Not(HasSubstr("class=\"block\"")));

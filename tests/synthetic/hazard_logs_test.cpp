@@ -1,4 +1,5 @@
-// The committed logs of tests/data/hazards/ against the phases that were flown (NAME.truth.csv).
+// The logs that the build makes of each difficulty (tests/CMakeLists.txt) against the phases that were flown
+// (NAME.truth.csv).
 
 #include "base/csv.h"
 #include "flight/load_flight.h"
@@ -13,15 +14,15 @@
 
 #include <gtest/gtest.h>
 
-namespace flightwatt::flight {
+namespace flightwatt::synthetic {
 namespace {
 
 struct FoundPhase {
     std::size_t sortie;
-    PhaseSpan span;
+    flight::PhaseSpan span;
 };
 
-std::vector<FoundPhase> found_phases(const FlightPhases& phases) {
+std::vector<FoundPhase> found_phases(const flight::FlightPhases& phases) {
     std::vector<FoundPhase> found;
     for (std::size_t s = 0; s < phases.sorties.size(); ++s) {
         for (const auto& span : phases.sorties[s].phases) found.push_back({s + 1, span});
@@ -30,7 +31,7 @@ std::vector<FoundPhase> found_phases(const FlightPhases& phases) {
 }
 
 void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
-    const auto phases = segment(select_tracks(read_flight(data)));
+    const auto phases = segment(select_tracks(flight::read_flight(data)));
     const auto found = found_phases(phases);
     ASSERT_EQ(found.size(), truth.rows.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -51,9 +52,9 @@ void expect_as_flown(const std::filesystem::path& data, const CsvTable& truth) {
 
 TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
     std::set<std::string> expected;
-    for (const auto& hazard : synthetic::anomaly_names()) expected.insert("hazard_01_" + hazard);
+    for (const auto& hazard : anomaly_names()) expected.insert("hazard_01_" + hazard);
     std::set<std::string> seen;
-    for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "tests" / "data" / "hazards")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::hazards_dir())) {
         if (entry.path().extension() != ".data") continue;
         SCOPED_TRACE(entry.path().filename().string());
         auto truth = entry.path();
@@ -64,4 +65,4 @@ TEST(HazardLogs, AreSegmentedAsTheyWereFlown) {
 }
 
 }  // namespace
-}  // namespace flightwatt::flight
+}  // namespace flightwatt::synthetic
