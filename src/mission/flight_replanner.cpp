@@ -27,7 +27,7 @@ void require_few_decisions(const PlanningProblem& known) {
                      "make decide_every_s in [policy] longer");
 }
 
-/// A few labels follow the plan all the way; more near the end, where what is left is spent.
+/// Returns few states to follow over a long time; more near the end, where what is left is spent.
 SearchLimits effort_for(double slots_left) {
     constexpr double searched_slots = 8.0;
     return {1e-4, slots_left <= searched_slots ? std::size_t{200} : std::size_t{5}, 4};
@@ -64,9 +64,7 @@ constexpr double jump_factor = 2.0;  ///< of the depletion predicted: beyond, ch
 AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
     if (!problem.adaptive) throw std::invalid_argument("make_adaptive_planner: the policy is not adaptive");
     require_few_decisions(problem);
-    auto tables = make_planning_tables(problem);
-    tables.step_s = tables.quick_step_s;  // what that is off is far below what flights differ by
-    return {problem, std::make_shared<const PlanningTables>(std::move(tables))};
+    return {problem, std::make_shared<const PlanningTables>(make_planning_tables(problem))};
 }
 
 FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)

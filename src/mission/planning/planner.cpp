@@ -20,12 +20,12 @@ struct Choice {
     double utility_per_s = 0.0;
 };
 
-/// Less power, or as much for more utility.
+/// Returns whether a draws less power than b, or as much for more utility.
 bool draws_less(const Choice& a, const Choice& b) {
     return a.power_w != b.power_w ? a.power_w < b.power_w : a.utility_per_s > b.utility_per_s;
 }
 
-/// Each of `starts` with each of `values`, which `add` appends.
+/// Returns each of `starts` with each of `values`, which `add` appends.
 template <typename Start, typename Values, typename Add>
 std::vector<Start> combined(const std::vector<Start>& starts, const Values& values, const Add& add) {
     std::vector<Start> all;
@@ -38,7 +38,7 @@ std::vector<Start> combined(const std::vector<Start>& starts, const Values& valu
     return all;
 }
 
-/// Every way to run one component; empty: off.
+/// Returns every way to run one component; the empty one is off.
 std::vector<compute::Configuration> ways_to_run(std::size_t component, const ComponentChoices& choices) {
     std::vector<compute::Configuration> ways{{{component, {}}}};
     for (const auto& levels : choices.levels)
@@ -77,8 +77,8 @@ std::vector<Choice> every_choice(const PlanningProblem& problem) {
     return choices;
 }
 
-/// Choices with more utility than all that draw less, and those of `kept`: with a dwell time, continuing a fixed
-/// configuration can be better than a change.
+/// Returns the choices with more utility than all that draw less, and those of `kept`: with a dwell time, continuing a
+/// fixed configuration can be better than a change.
 std::vector<Choice> undominated(std::vector<Choice> choices, const std::vector<compute::Configuration>& kept) {
     std::ranges::stable_sort(choices, draws_less);
     std::optional<double> most;
@@ -90,7 +90,7 @@ std::vector<Choice> undominated(std::vector<Choice> choices, const std::vector<c
     return choices;
 }
 
-/// Appends the slots of a time that nothing is fixed for.
+/// Appends the slots of a time in which nothing is fixed.
 void add_free_slots(PhaseSegment free, double slot_s, double tolerance_s, std::vector<MissionSlot>& slots) {
     while (free.start_s < free.end_s - tolerance_s) {
         const double next_s = (std::floor((free.start_s + tolerance_s) / slot_s) + 1.0) * slot_s;
@@ -111,7 +111,7 @@ void require_few_slots(const PlanningProblem& problem, double duration_s) {
         "make slot_s in [plan] longer");
 }
 
-/// std::nullopt if it is not among the choices.
+/// Returns the index of a configuration; none if it is not among the choices.
 std::optional<std::size_t> index_of(const PlanningTables& planner, const compute::Configuration& run) {
     const auto found = std::ranges::find(planner.configurations, run);
     if (found == planner.configurations.end()) return std::nullopt;
@@ -131,29 +131,7 @@ ScheduleChoices choices_of(const PlanningProblem& problem, const PlanningTables&
     return choices;
 }
 
-std::vector<PhaseSegment> parts_of(const std::vector<MissionSlot>& slots) { return {slots.begin(), slots.end()}; }
-
-std::vector<double> compute_w_of(const PlanningProblem& problem, const PlanningTables& planner) {
-    std::vector<double> compute_w;
-    for (const auto& run : planner.configurations) compute_w.push_back(power_w(problem.setup.compute, run));
-    return compute_w;
-}
-
-/// With steps of at least the planner's length. The error of longer ones is proportional to the square of the step, as
-/// at a knot of the open-circuit voltage.
-SlotDynamics dynamics_of(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
-                         const std::vector<MissionSlot>& slots, double step_s) {
-    const double longer_s = std::max(step_s, planner.step_s);
-    auto dynamics = make_slot_dynamics(problem.setup, parts_of(slots), compute_w_of(problem, planner), longer_s,
-                                       start.mechanical_factor);
-    if (longer_s > planner.step_s) {
-        const double part = longer_s / planner.quick_step_s * (longer_s / planner.quick_step_s);
-        dynamics.error_percent = part * coarse_error_percent;
-        dynamics.error_v = part * coarse_error_v;
-    }
-    return dynamics;
-}
-
+/// Returns whether a choice of least power charges the battery at any time.
 bool charges(const SlotDynamics& dynamics) {
     constexpr double rounding_of_power_w = 1e-6;  // as refuse_charging has it
     const double min_compute_w = std::ranges::min(dynamics.compute_w);
@@ -197,10 +175,7 @@ PlanningTables make_planning_tables(const PlanningProblem& problem) {
         configurations.push_back(run);
         planner.utility_per_s.push_back(utility_per_s(problem.setup.utilities, run));
     }
-    const auto slots = parts_of(make_slots(problem));
-    const auto compute_w = compute_w_of(problem, planner);
-    planner.step_s = choose_step_s(problem.setup, slots, compute_w);
-    planner.quick_step_s = choose_coarse_step_s(problem.setup, slots, compute_w, planner.step_s);
+    for (const auto& run : configurations) planner.compute_w.push_back(power_w(problem.setup.compute, run));
     return planner;
 }
 
@@ -242,28 +217,17 @@ Mission with_minimum_energy_schedule(const MissionVariant& mission) {
 }
 
 Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
-                    double reserve_soc_percent, const SearchLimits& effort) {
-    constexpr double rounding_percent = 3e-6;  // of the search's battery against the simulation's
-    constexpr double closer = 4.0;
+                    double reserve_soc_percent, const SearchLimits& limits) {
+    constexpr double rounding_percent = 3e-6;  // of slot_dynamics.h against the simulation
     const auto slots = make_slots(problem, start.time_s);
     const auto choices = choices_of(problem, planner, start, slots);
-    const auto exact = dynamics_of(problem, planner, start, slots, planner.step_s);
-    std::optional<SlotDynamics> quick;
-    std::optional<SlotDynamics> in_between;
-    if (planner.quick_step_s > planner.step_s) {
-        quick = dynamics_of(problem, planner, start, slots, planner.quick_step_s);
-        in_between = dynamics_of(problem, planner, start, slots, planner.quick_step_s / closer);
-    }
-    const auto chosen = search_schedule({exact,
-                                         quick ? *quick : exact,
-                                         in_between ? *in_between : exact,
-                                         choices,
-                                         {start.soc_percent, start.rc_voltage_v},
-                                         reserve_soc_percent - rounding_percent},
-                                        effort);
+    const auto dynamics =
+        make_slot_dynamics(problem.setup, {slots.begin(), slots.end()}, planner.compute_w, start.mechanical_factor);
+    const auto chosen = search_schedule(
+        {dynamics, choices, {start.soc_percent, start.rc_voltage_v}, reserve_soc_percent - rounding_percent}, limits);
     Plan plan;
     plan.feasible = chosen.feasible;
-    plan.bound_is_proven = !charges(exact);
+    plan.bound_is_proven = !charges(dynamics);
     plan.schedule = schedule_of(planner, slots, chosen.best.choices);
     plan.final_soc_percent = chosen.best.end_percent;
     double duration_s = 0.0;

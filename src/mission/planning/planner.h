@@ -14,34 +14,32 @@ struct MissionSlot : PhaseSegment {
     std::optional<compute::Configuration> fixed;
 };
 
-/// Tables for all plans of a problem: configurations with their utility and depletion.
+/// The choices of all plans of a problem: configurations with their utility and power.
 struct PlanningTables {
     std::vector<compute::Configuration> configurations;  ///< the choices
     std::vector<double> utility_per_s;                   ///< of each of them
+    std::vector<double> compute_w;                       ///< of each of them
     std::size_t free_choices = 0;  ///< number of leading ones that may be chosen; the others are only fixed
-    // Steps of slot_dynamics.h: [s] as choose_step_s has it, and choose_coarse_step_s.
-    double step_s = 0.0;
-    double quick_step_s = 0.0;
 };
 
-/// The configurations that [plan] allows, without those that draw more than another one of as much utility, and those
-/// that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
+/// Returns the configurations that [plan] allows, without those that draw more than another one of as much utility, and
+/// those that the fixed segments run. Throws InputError if the mission states no utility, or has more than a million
 /// combinations.
 PlanningTables make_planning_tables(const PlanningProblem& problem);
 
-/// The schedule of the mission from `time_s` on that demands least energy: the configuration that draws least wherever
-/// nothing is fixed (which any dwell time allows). Throws InputError as make_planning_tables does for too many
+/// Returns the schedule of the mission from `time_s` on that demands least energy: the configuration that draws least
+/// wherever nothing is fixed (which any dwell time allows). Throws InputError as make_planning_tables does for too many
 /// combinations.
 Schedule minimum_energy_schedule(const PlanningProblem& problem, double time_s = 0.0);
 
-/// The mission with that schedule; one that has a schedule stays as it is.
+/// Returns the mission with that schedule; one that has a schedule stays as it is.
 Mission with_minimum_energy_schedule(const MissionVariant& mission);
 
-/// The configuration that [plan] allows and that draws least.
+/// Returns the configuration that [plan] allows and that draws least.
 compute::Configuration min_power_configuration(const PlanningProblem& problem);
 
-/// The mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since their
-/// phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.
+/// Returns the mission from `time_s` on: fixed segments, and between them slots that end at multiples of slot_s since
+/// their phase began, or where a fixed segment or the phase does. Throws InputError for more than 20000 slots.
 std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_s = 0.0);
 
 /// Where a plan starts: before the flight, or in it.
@@ -55,9 +53,9 @@ struct PlanStart {
     double rc_voltage_v = 0.0;       ///< of a Thévenin battery
 };
 
-/// The schedule of most utility of those that end with the reserve; with little effort in milliseconds, for calls in
-/// flight.
+/// Returns the schedule of most utility of those that end with the reserve, by search_schedule; the one of least energy
+/// demand if none does. Takes milliseconds with low limits, for calls in flight.
 Plan plan_remaining(const PlanningProblem& problem, const PlanningTables& planner, const PlanStart& start,
-                    double reserve_soc_percent, const SearchLimits& effort = {});
+                    double reserve_soc_percent, const SearchLimits& limits = {});
 
 }  // namespace flightwatt::mission

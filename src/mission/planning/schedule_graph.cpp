@@ -14,11 +14,11 @@ std::size_t gap_end(const std::vector<ChoiceSlot>& slots, std::size_t i) {
 
 bool begins_gap(const std::vector<ChoiceSlot>& slots, std::size_t i) { return i == 0 || slots[i - 1].fixed; }
 
-/// Adds the run of `choice` from slot `from` for at least so long, if it can be.
+/// Adds the shortest run of `choice` from slot `from` that lasts for the dwell time, if there is one.
 void add_run(const ScheduleChoices& problem, std::size_t from, std::size_t choice, std::vector<ChoiceRun>& runs) {
     const auto& slots = problem.slots;
     const auto end = gap_end(slots, from);
-    ChoiceRun run{choice, from, 0.0};
+    ChoiceRun run{choice, from};
     double lasts_s = 0.0;
     do {
         lasts_s += slots[run.to++].duration_s;
@@ -29,12 +29,12 @@ void add_run(const ScheduleChoices& problem, std::size_t from, std::size_t choic
     if (lasts || continues || begins_gap(slots, from)) runs.push_back(run);
 }
 
-/// One slot of `choice`.
-ChoiceRun single(const ScheduleChoices& problem, std::size_t slot, std::size_t choice) {
-    return {choice, slot + 1, problem.utility_per_s[choice] * problem.slots[slot].duration_s};
+/// Returns the run of one slot.
+ChoiceRun single(const ScheduleChoices& problem, std::size_t slot, std::size_t choice, bool continues = false) {
+    return {choice, slot + 1, problem.utility_per_s[choice] * problem.slots[slot].duration_s, continues};
 }
 
-/// The running choice continues until its dwell time is over.
+/// Begins the graph where the dwell time of the running choice is over.
 void commit_running(const ScheduleChoices& problem, ScheduleGraph& graph) {
     if (!problem.running || problem.slots.empty() || problem.slots[0].fixed) return;
     graph.begin_choice = problem.running->choice;
@@ -54,7 +54,6 @@ ScheduleGraph make_schedule_graph(const ScheduleChoices& problem) {
     graph.slots = problem.slots.size();
     graph.choices = problem.utility_per_s.size();
     graph.runs.resize(graph.slots);
-    graph.one_more.resize(graph.slots);
     for (std::size_t i = 0; i < graph.slots; ++i) {
         if (const auto& fixed = problem.slots[i].fixed) {
             graph.runs[i].push_back(single(problem, i, *fixed));
@@ -62,9 +61,9 @@ ScheduleGraph make_schedule_graph(const ScheduleChoices& problem) {
         }
         for (std::size_t c = 0; c < problem.free_choices; ++c) {
             add_run(problem, i, c, graph.runs[i]);
-            const bool is_run =
+            const bool is_single =
                 !graph.runs[i].empty() && graph.runs[i].back().choice == c && graph.runs[i].back().to == i + 1;
-            if (!is_run) graph.one_more[i].push_back(single(problem, i, c));
+            if (!is_single) graph.runs[i].push_back(single(problem, i, c, true));
         }
     }
     commit_running(problem, graph);
@@ -84,7 +83,8 @@ std::vector<std::size_t> least_choices(const ScheduleChoices& problem, const Sch
         const auto consider = [&](std::size_t choice) {
             if (!least || compute_w[choice] < compute_w[*least]) least = choice;
         };
-        for (const auto& run : graph.runs[i]) consider(run.choice);
+        for (const auto& run : graph.runs[i])
+            if (!run.continues) consider(run.choice);
         const bool may_continue = i == graph.begin && !is_fixed && graph.begin_choice != ScheduleGraph::no_choice;
         if (may_continue && (!least || graph.begin_choice < problem.free_choices)) consider(graph.begin_choice);
         choices.push_back(least.value());
@@ -97,17 +97,6 @@ double utility_of(const ScheduleChoices& problem, const std::vector<std::size_t>
     for (std::size_t i = 0; i < choices.size(); ++i)
         utility += problem.utility_per_s[choices[i]] * problem.slots[i].duration_s;
     return utility;
-}
-
-std::vector<std::size_t> choices_until(RunStep last, const std::vector<RunStep>& trail, const ScheduleGraph& graph) {
-    std::vector<std::size_t> choices(graph.slots, graph.begin_choice);
-    while (last.to > graph.begin) {
-        const auto& before = trail[last.before];
-        std::fill(choices.begin() + static_cast<std::ptrdiff_t>(before.to),
-                  choices.begin() + static_cast<std::ptrdiff_t>(last.to), last.choice);
-        last = before;
-    }
-    return choices;
 }
 
 }  // namespace flightwatt::mission

@@ -1,18 +1,41 @@
 #pragma once
 
-#include "mission/planning/schedule_value.h"
+#include "mission/planning/utility_bound.h"
 
 #include <cstddef>
 #include <limits>
 #include <vector>
+
+// Problem: one choice a slot, so that the utility is greatest and the battery lands with its reserve. What a choice
+// draws depends on what ran before: the voltage falls with the charge, an RC pair remembers currents, and a cut-off may
+// end the flight.
+//
+// State: slot, running choice, state of charge, RC voltage. Dwell times are runs of several slots (schedule_graph.h).
+// The battery is integrated from state to state (slot_dynamics.h) without interpolation: a schedule found lands as it
+// does in the simulation.
+//
+// Order of states: if nothing charges, more charge and less RC voltage are better at any later time, and two charges
+// never approach each other (docs/methods.md). A state is dropped if another one of its slot has no less utility, and
+// no less charge at both the least and the greatest cost of its RC voltage.
+//
+// Bound: from the landing backwards, the utility that may follow is at most a concave function of charge, whose slope
+// is the Lagrangian price of charge (utility_bound.h). A state is dropped if that does not lead beyond the best
+// schedule known. If too many are left, those of greatest bound and the best one of each cell of charge are kept; the
+// result's bound is then no lower than that of the others.
+//
+// Passes with increasing numbers of states: the first ones find a good schedule, with which the later ones drop most
+// states, and whose RC voltages make the bound tighter. A pass that leaves out none is exact up to `relative_gap`.
+//
+// Limits: no bound where something charges the battery. In long missions whose battery would be cut off late, the bound
+// may be some percent too high, and the best schedule may not be found (docs/validation.md).
 
 namespace flightwatt::mission {
 
 /// How far to search.
 struct SearchLimits {
     double relative_gap = 3e-5;      ///< between utility and bound, at which the search ends
-    std::size_t max_labels = 20000;  ///< per slot; dropping more of them raises the bound
-    std::size_t value_cells = 96;    ///< of the bound over charge (schedule_value.h)
+    std::size_t max_states = 20000;  ///< per slot and choice; leaving out more of them raises the bound
+    std::size_t bound_cells = 96;    ///< of charge, for the bound
 };
 
 struct FoundSchedule {
@@ -24,57 +47,10 @@ struct FoundSchedule {
 struct SearchResult {
     bool feasible = false;
     FoundSchedule best;  ///< if infeasible, the schedule of least energy demand
-    double bound = 0.0;  ///< proven: nothing that lands with the reserve has more utility; 0 if infeasible
+    double bound = 0.0;  ///< no schedule that lands with the reserve has more utility; 0 if infeasible
 };
 
-/// The schedule of greatest utility that keeps the reserve: label search (docs/methods.md) over charge, RC voltage and
-/// utility, with the upper bound of schedule_value.h. Labels dropped to limit their number raise the bound, which holds
-/// unless something charges the battery.
-SearchResult search_schedule(const ScheduleProblem& problem, const SearchLimits& effort);
-
-/// Schedules of the first slots with nearly the same result: one of them, by its last run, and a state and a utility
-/// that none of them exceeds.
-struct StateLabel : RunStep {
-    battery::BatteryState state;
-    double utility = 0.0;
-    double effective_percent = 0.0;
-    double adjusted_percent = 0.0;  ///< the charge less what its RC voltage costs at least
-    double bound = 0.0;             ///< nothing that begins so has more utility
-    double priority = 0.0;          ///< where there is no room for all, those with the greatest are kept
-};
-
-/// What counts when labels of a slot are compared.
-struct MergeWeights {
-    double rc_low = 0.0;  ///< [points/V] as in UtilityBound
-    double rc_high = 0.0;
-    double rc_joined = 0.0;
-    double utility_per_percent = 0.0;  ///< about
-    double utility_tolerance = 0.0;    ///< a utility that counts for nothing
-};
-
-/// Removes dominated labels: another one has no less charge, neither adjusted by the least nor by the greatest cost of
-/// its RC voltage (or no more RC voltage, where that may end a flight). Of the others, those that differ by a utility
-/// of less than `tolerance` are merged into one that none of them exceeds. `labels` is in order of adjusted charge.
-std::vector<StateLabel> merge_labels(const std::vector<StateLabel>& labels, const MergeWeights& weights,
-                                     double tolerance);
-
-/// Heuristic estimate of the utility that can follow, to rank labels where a late cut-off makes the upper bound too
-/// loose. It may be too high or too low.
-struct HeuristicValue {
-    /// At a slot's start: from the least charge that may land up to that of the course of least power, in equal steps.
-    struct AtSlot {
-        double min_percent = 0.0;
-        double step_percent = 1.0;
-        std::vector<double> utility;  ///< minus infinity: does not land
-    };
-    std::vector<AtSlot> at;
-};
-
-/// By dynamic programming over `cells` of charge a slot, with the steady RC voltage of each choice and runs of minimum
-/// duration.
-HeuristicValue make_cautious_value(const ScheduleProblem& problem, const ScheduleGraph& graph,
-                                   const UtilityBound& bounds, std::size_t cells);
-
-double utility_to_go(const HeuristicValue& value, std::size_t slot, double soc_percent);
+/// Returns the schedule of greatest utility found among those that keep the reserve, and an upper bound of all.
+SearchResult search_schedule(const ScheduleProblem& problem, const SearchLimits& limits);
 
 }  // namespace flightwatt::mission

@@ -49,7 +49,7 @@ struct SearchCase {
     double reserve_percent = 0.0;
 
     SearchResult search(const SearchLimits& limits = {}) const {
-        return search_schedule({dynamics, dynamics, dynamics, choices, {100.0}, reserve_percent}, limits);
+        return search_schedule({dynamics, choices, {100.0}, reserve_percent}, limits);
     }
 
     double end_percent(const std::vector<std::size_t>& run) const {
@@ -75,7 +75,6 @@ void add_slot(double duration_s, double power_w, std::optional<std::size_t> fixe
     SlotDynamics::Slot slot;
     slot.parts.push_back({duration_s, {made.dynamics.circuit, duration_s}, {power_w, power_w, power_w}});
     slot.min_mechanical_w = slot.max_mechanical_w = power_w;
-    slot.mechanical_energy_j = power_w * duration_s;
     slot.duration_s = duration_s;
     made.dynamics.slots.push_back(slot);
     made.choices.slots.push_back({duration_s, fixed});

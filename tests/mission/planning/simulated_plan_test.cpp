@@ -144,6 +144,18 @@ TEST(SimulatedPlanStudy, UsesWhatATightCutOffLeaves) {
     EXPECT_LE(plan.plan.utility_bound, *plan.summary.utility * 1.05);
 }
 
+TEST(SimulatedPlanStudy, IsNoWorseThanOneOfFewerChangesBeforeALateCutOff) {
+    // With a cut-off just below what the least power leads to, most schedules of great utility end early.
+    auto free = test::SmallMissionGenerator(71017).make_long(false, true).problem;
+    auto staying = free;
+    staying.plan.dwell_s = 3.0 * free.plan.slot_s;
+    const auto plan = plan_mission(free);
+    const auto of_fewer = plan_mission(staying);
+    ASSERT_TRUE(plan.plan.feasible && of_fewer.plan.feasible);
+    EXPECT_GE(*plan.summary.utility, 1.04 * *of_fewer.summary.utility);
+    EXPECT_LE(*plan.summary.utility, plan.plan.utility_bound);
+}
+
 TEST(SimulatedPlan, IsNotCutOff) {
     const auto mission = thevenin_plan(20.0, 11.0)(1800.0);
     const auto plan = plan_mission(mission);
