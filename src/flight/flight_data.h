@@ -96,7 +96,7 @@ Diagnostics selection_diagnostics(const FlightData& data);
 
 /// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if it has no such
 /// circuit.
-FlightData of_circuit(FlightData data, std::size_t number);
+FlightData select_circuit(FlightData data, std::size_t number);
 
 /// Why there is no measured power; empty if there is.
 std::string no_power_reason(const FlightData& data);

@@ -70,7 +70,7 @@ auto with_binary_log(const FlightFile& file, const Use& use) {
 inline constexpr std::size_t min_id_beginning = 4;
 
 /// The messages of a log and their numbers, the most frequent first: "GPS 310". Empty for a series.
-std::vector<std::string> census_of(const FlightFile& file);
+std::vector<std::string> list_message_counts(const FlightFile& file);
 
 /// The log is valid, but has no data of the requested aircraft, or of several of which one is requested.
 class OtherAircraftError : public InputError {

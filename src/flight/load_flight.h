@@ -4,7 +4,7 @@
 #include "flight/flight_data.h"
 #include "flight/flight_file.h"
 #include "flight/flight_series.h"
-#include "flight/power_check.h"
+#include "flight/power_report.h"
 #include "flight/segment.h"
 #include "telemetry/data_file.h"
 
@@ -65,8 +65,8 @@ struct LoadedFile {
 
 /// The number, from 1, of the requested recording, else of the first in which an aircraft flew, else of the first with
 /// one. Throws InputError for a recording that is missing, OtherAircraftError for one without the aircraft.
-std::size_t used_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
-                           const std::optional<std::size_t>& requested);
+std::size_t choose_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
+                             const std::optional<std::size_t>& requested);
 
 /// The candidates of the used recording.
 Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft, bool required = true);

@@ -5,6 +5,7 @@
 #include "mechanical/flight_progress.h"
 #include "mechanical/prediction.h"
 #include "mission/mission.h"
+#include "path/path_tracker.h"
 #include "path/remaining_path.h"
 
 #include <functional>
@@ -124,8 +125,8 @@ struct TimeCurve {
 
 /// Predicted state of charge from `now_s` to the landing, or until the battery fails, at up to about a hundred points.
 /// The input has a battery.
-TimeCurve soc_ahead(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
-                    double now_s);
+TimeCurve predict_soc_curve(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
+                            double now_s);
 
 /// From a mission with a mechanical model: model, path or cruise duration, battery (capacity as uncertain as in the
 /// mission's drawn flights) and limits; `no_prediction_reason` where its model allows no prediction. `file`: of the

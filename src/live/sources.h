@@ -50,31 +50,6 @@ class MessageSource {
 };
 
 /// Parses a .data line. std::nullopt where the first word is not a finite number or no message follows it.
-std::optional<IncomingMessage> message_of_line(std::string_view line);
-
-// Opening throws UsageError for an invalid name and InputError for a source that cannot be opened. Links are received
-// by a thread of their own. Messages without a time get their arrival time: seconds since opening times `clock_factor`
-// (60 for a log that is played at 60 times its speed). A file that is truncated or replaced is read from its beginning.
-
-/// The Ivy bus "127.255.255.255:2010": messages of aircraft, and replays with their own times.
-std::unique_ptr<MessageSource> open_ivy_bus(std::string_view bus, double clock_factor = 1.0);
-
-/// Link frames on a UDP port: "4242", or "127.0.0.1:4242" for one local address.
-std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageDictionary definitions,
-                                        double clock_factor = 1.0);
-
-/// Link frames or XBee packets on a serial line: "/dev/ttyUSB0:57600"; default 57600 baud.
-std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
-                                           double clock_factor = 1.0);
-
-/// .data lines of the standard input, until it is closed.
-std::unique_ptr<MessageSource> standard_input();
-
-/// A .data file from its beginning, while the ground station appends to it.
-std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& path);
-
-/// A binary log that is being written: SD card (with frame times), or capture of a link or an XBee.
-std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
-                                                 telemetry::MessageDictionary definitions);
+std::optional<IncomingMessage> parse_message_line(std::string_view line);
 
 }  // namespace flightwatt::live

@@ -77,6 +77,6 @@ struct PathDefaults {
 /// then the hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's, one that is
 /// 300 km and more from the start, an altitude where the path has none at its start, and an entry that is nothing or
 /// two things.
-FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
+FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
 }  // namespace flightwatt::path

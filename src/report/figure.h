@@ -32,7 +32,7 @@ VegaJson figure_template(std::string_view name);
 
 /// `part` of a template with each "{{FIELD}}" replaced by that member of `values`, if there is one. Layers with null
 /// data are removed.
-VegaJson filled(VegaJson part, const VegaJson& values);
+VegaJson fill_template(VegaJson part, const VegaJson& values);
 
 /// A figure of the template `name`; with "panels" in `values`, its panel of "concat" is repeated with each of them.
 Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,

@@ -62,7 +62,7 @@ struct AircraftTrend {
 };
 
 /// All quantities of each aircraft.
-std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights);
+std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights);
 
 Fields<AircraftTrend> record_fields(const AircraftTrend*);
 

@@ -31,13 +31,4 @@ std::optional<AutopilotFormat> detect_autopilot_format(std::string_view bytes);
 AutopilotLog read_autopilot_log(std::string_view bytes, AutopilotFormat format, const std::filesystem::path& file,
                                 const std::vector<MessageRequest>& wanted);
 
-/// The file that represents the log of a table by ulog2csv: of NAME_TOPIC_N.csv, that of the battery in its folder, else
-/// of an altitude. std::nullopt for other files.
-std::optional<std::filesystem::path> ulog_tables_of(const std::filesystem::path& file);
-
-/// The tables of the requested topics of the log that a file represents, as one text for read_autopilot_log(). Throws
-/// InputError for a table that cannot be read, and for more than `max_bytes`.
-std::string join_ulog_tables(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted,
-                             std::size_t max_bytes);
-
 }  // namespace flightwatt::telemetry

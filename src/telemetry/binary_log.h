@@ -42,9 +42,9 @@ TelemetryLog parse_binary_telemetry(const BinaryLog& log, LogConfiguration confi
                                     const std::vector<MessageRequest>& wanted);
 
 /// Throws InputError if a quarter of the counted messages or more have other lengths than defined.
-void require_fitting(const LinkCounts& counts, const BinaryLog& log);
+void require_matching_lengths(const LinkCounts& counts, const BinaryLog& log);
 
 /// Names and counts of the messages, most frequent first: count_messages() for binary logs.
-std::vector<std::pair<std::string, std::size_t>> census_of_binary_messages(const BinaryLog& log);
+std::vector<std::pair<std::string, std::size_t>> count_binary_messages(const BinaryLog& log);
 
 }  // namespace flightwatt::telemetry

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,47 +82,5 @@ struct AutopilotLog {
     LogFacts facts = {};
     std::vector<AutopilotMessage> messages = {};  ///< all, the most frequent first
 };
-
-/// Reads the requested messages of a Paparazzi .data text. `data_file` is named in errors, `configuration` is that of
-/// the .log. Throws InputError for a text without a telemetry line, and for more than 300 senders.
-TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                            std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
-
-/// The same for a text that may have no telemetry. Throws InputError only for more than 300 senders.
-TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
-
-/// Decodes single messages as they arrive into the rows that parse_telemetry gives for a whole log.
-class MessageDecoder {
-  public:
-    using Skipped = std::map<std::string, std::size_t, std::less<>>;
-
-    MessageDecoder(const std::optional<LogConfiguration>& configuration, const std::vector<MessageRequest>& wanted);
-    ~MessageDecoder();
-    MessageDecoder(const MessageDecoder&) = delete;
-    MessageDecoder& operator=(const MessageDecoder&) = delete;
-
-    /// Decodes "ENERGY 57 11.62 1.64". If `values` of the fields are given (NaN for text and arrays), only the name and
-    /// arrays are read from the text. The table has one row and is valid until the next call; nullptr for a message
-    /// that is not requested, or not usable (and counted).
-    const MessageTable* decode(double time_s, std::string_view message, std::span<const double> values = {});
-    /// Starts another log: without a .log its messages may have other built-in definitions.
-    void restart();
-
-    /// Number of unusable messages and values, by reason.
-    const Skipped& skipped() const { return skipped_; }
-    const std::vector<AssumedDefinition>& assumed_definitions() const { return assumed_; }
-
-  private:
-    struct Message;
-
-    std::vector<Message> messages_;
-    std::vector<std::string_view> words_;  ///< of the last message; its memory is reused
-    Skipped skipped_;
-    std::vector<AssumedDefinition> assumed_;
-};
-
-/// Names and counts of the messages in a .data text, most frequent first; at most the first thousand names.
-std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view text);
 
 }  // namespace flightwatt::telemetry

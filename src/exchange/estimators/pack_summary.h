@@ -38,8 +38,8 @@ struct CurveFit {
     Eigen::VectorXd coefficients;  ///< of 1, x, x^2 ...
     double max_error = 0.0;
 };
-CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int order,
-                           const std::function<double(double)>& curve);
+CurveFit fit_polynomial(const mechanical::FlownRange& range, int points, int order,
+                        const std::function<double(double)>& curve);
 
 /// The open-circuit voltage as a line over the state of charge.
 struct VoltageLine {
@@ -49,7 +49,7 @@ struct VoltageLine {
     double error_v = 0.0;         ///< largest deviation of the curve there
     double error_below_v = 0.0;   ///< below
 };
-VoltageLine fitted_line(const battery::Battery& battery, double lowest_percent);
+VoltageLine fit_voltage_line(const battery::Battery& battery, double lowest_percent);
 
 /// What a simulator with one power, one resistance and a line as voltage does not represent.
 std::string power_limit(const EstimatorInput& input);

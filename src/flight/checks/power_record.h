@@ -4,7 +4,7 @@
 #include "flight/checks/runs.h"
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/power_check.h"
+#include "flight/power_report.h"
 
 #include <algorithm>
 #include <array>
@@ -51,7 +51,7 @@ struct PowerRecord {
     double energy_j = 0.0;             ///< in flight
     double duration_s = 0.0;
 
-    // Derived from the members above by add_facts().
+    // Derived from the members above by derive_facts().
     std::vector<SampleGap> gaps;                    ///< of the power samples
     std::optional<IdleCurrent> at_rest;             ///< without a throttle: at rest outside of the sorties
     std::vector<std::optional<IdleCurrent>> rests;  ///< the same before the first sortie, after it, ... the last
@@ -73,7 +73,9 @@ struct PowerRecord {
     bool is_at_rest(std::size_t i) const { return states[i] == State::rest; }
     bool has_current() const { return !current_a.empty(); }
     bool has_throttle() const { return !throttle_percent.empty(); }
-    bool is_open(std::size_t i) const { return has_throttle() && throttle_percent[i] > open_throttle_percent; }
+    bool has_open_throttle(std::size_t i) const {
+        return has_throttle() && throttle_percent[i] > open_throttle_percent;
+    }
     double rest_percent() const {  ///< current at rest, of the mean in flight
         return units::percentage(std::abs(at_rest->mean_a), std::max(std::abs(mean_a), 1e-9));
     }
@@ -84,12 +86,12 @@ struct PowerRecord {
 PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases, const SegmentationOptions& options);
 
 /// `resting`: indices of the samples at rest with the motor off (without a throttle: at rest outside of the sorties).
-void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting);
+void derive_facts(PowerRecord& record, const std::vector<std::size_t>& resting);
 
 /// Difference of a counter between two times.
-double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s);
+double counter_change(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s);
 
 /// The gaps within sorties or at their edges.
-std::vector<SampleGap> gaps_in(const std::vector<double>& time_s, const std::vector<Sortie>& sorties);
+std::vector<SampleGap> find_flight_gaps(const std::vector<double>& time_s, const std::vector<Sortie>& sorties);
 
 }  // namespace flightwatt::flight

@@ -57,16 +57,12 @@ struct LogFamily {
     enum class Unstated { unused, assumed, noted } unstated_units = Unstated::assumed;
 };
 
-const LogFamily& ardupilot_family();
-const LogFamily& px4_family();
-const LogFamily& sdlog2_family();  ///< of PX4 until 2017
-
 /// Voltage times current, or any other two.
 double product(const std::vector<double>& values);
 
 /// A Unix time of a receiver, with 1024 weeks added while it is before 2010, when no such log was written: receivers
 /// whose counter of weeks overflowed are 20 or 39 years late. NaN for one before GPS.
-double after_rollover(double utc_s);
+double correct_week_rollover(double utc_s);
 
 /// Adds the tracks of a sender's messages. Returns the units that are assumed: "BAT.Volt is read in V".
 std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,

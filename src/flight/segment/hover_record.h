@@ -14,7 +14,7 @@ namespace flightwatt::flight {
 std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight& grid);
 
 /// Whether a state takes a value after `from_s` and up to `to_s`.
-bool takes(const Track& state, double value, double from_s, double to_s);
+bool changes_to(const Track& state, double value, double from_s, double to_s);
 
 /// The rests: all but the hovers.
 std::vector<IndexSpan> rests_between(const std::vector<IndexSpan>& hovers, const ResampledFlight& grid);

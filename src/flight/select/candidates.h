@@ -7,7 +7,7 @@
 namespace flightwatt::flight {
 
 /// Whether a message of the log has the track, whose unit is then known; a column of a user's CSV may have any.
-bool is_of_message(const Track& track);
+bool comes_from_message(const Track& track);
 
 /// The candidate without outliers.
 ChosenTrack cleaned(const FlightSeries& series, const Track& candidate);

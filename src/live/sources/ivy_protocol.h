@@ -56,7 +56,7 @@ std::optional<IvyLine> parse_ivy_line(std::string_view line);
 std::string to_ivy_line(IvyType type, int id, std::string_view arguments = {});
 
 /// The groups of a message's arguments, each ended by \003.
-std::vector<std::string_view> groups_of(std::string_view arguments);
+std::vector<std::string_view> split_groups(std::string_view arguments);
 
 /// Extracts telemetry from the texts on an Ivy bus. Messages of an aircraft have no time and are forwarded at once.
 /// Paparazzi's log player sends "replay20 ENERGY ...", then "time20 13.9": the message is forwarded with that time.

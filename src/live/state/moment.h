@@ -1,8 +1,10 @@
 #pragma once
 
-#include "battery/discharge_record.h"
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "live/live_flight.h"
+#include "live/live_state.h"
+#include "live/prediction.h"
+#include "path/path_tracker.h"
 
 #include <optional>
 #include <string>
@@ -23,20 +25,6 @@ double retention_start_s(const flight::FlightPhases& phases, const LiveState& st
 /// An error's text without "FLIGHT: " before it.
 std::string without_flight_name(const std::string& text, const std::string& flight);
 
-/// The state of charge by the charge drawn and by voltage, of a series that ends now. `carried_percent`: known state of
-/// charge at its start. Without a usable record (at rest, or started in flight) only by voltage.
-LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
-                         const flight::FlightData& data, std::optional<battery::DischargeRecord>& record);
-
-std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
-                             double initial_soc_percent, double time_s);
-
-/// Probability of landing below the reserve or not at all, from the predictive distributions of the energy (Student's
-/// t) and the capacity (normal, where it has an interval) by a first-order reliability method (docs/live.md). `now` has
-/// a state.
-std::optional<double> probability_below_reserve(const PredictionInput& input, const Prediction& prediction,
-                                                const LiveBattery& now);
-
 /// Progress of a flight whose telemetry begins in the air, since its first message. Throws NoResultError before 30 s of
 /// cruise were received.
 mechanical::FlightProgress airborne_progress(const flight::FlightData& data, const flight::Sortie& sortie);
@@ -54,7 +42,7 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
 /// The alarms of a state, most severe first: silent link, probability of missing the reserve, voltage below the
 /// battery's model, power outside the model's 95 % interval. `before`: of the last state. A grade that was reached ends
 /// at half of its threshold, so that an alarm near it does not come and go.
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input,
-                             const std::vector<Alarm>& before);
+std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<PredictionInput>& input,
+                                   const std::vector<LiveAlarm>& before);
 
 }  // namespace flightwatt::live

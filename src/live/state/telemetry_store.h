@@ -2,6 +2,7 @@
 
 #include "flight/flight_series.h"
 #include "live/sources.h"
+#include "telemetry/message_decoder.h"
 #include "telemetry/telemetry_log.h"
 
 #include <cstddef>

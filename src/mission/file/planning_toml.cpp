@@ -1,5 +1,6 @@
+#include "mission/file/planning_toml.h"
+
 #include "base/toml_reader.h"
-#include "mission/file/mission_tables.h"
 
 #include <algorithm>
 #include <functional>

@@ -2,31 +2,15 @@
 
 #include "path/plan_files.h"
 
-#include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
 
 namespace flightwatt::path {
-
-/// Value of sums and products of numbers, and of names and calls that `value_of` knows; none for anything else.
-using NamedValues = std::function<std::optional<double>(const std::string&)>;
-std::optional<double> evaluate(std::string_view expression, const NamedValues& value_of);
-
-/// Name and arguments of "nav_line_run(WP_1, WP_2, nav_radius)".
-std::pair<std::string, std::vector<std::string>> function_call(const std::string& text);
-
-/// The number above which a condition wants one of the names, as "NavCircleCount() @GT 0.5" or "stage_time>10".
-std::optional<double> end_of(const std::string& condition, std::initializer_list<std::string_view> names);
-
-/// The parts between any of the separators that are not empty.
-std::vector<std::string> split(const std::string& text, const char* separators);
 
 /// A flight plan of Paparazzi as XML.
 struct FlightPlan {
@@ -57,16 +41,5 @@ PathEntry waypoint_entry(const FlightPlan& plan, std::size_t number);
 /// Value of an expression with the plan's variables, ground_alt, GetAltRef(), flight_altitude and
 /// WaypointAlt(WP_...).
 std::optional<double> evaluate(const FlightPlan& plan, std::string_view expression);
-
-/// The state between blocks.
-struct BlockState {
-    std::vector<PathEntry> entries;
-    std::map<std::string, double> values;  ///< settings, and values set by the stages
-};
-
-/// Appends the movements of a block to the entries, and returns what of it is not flown. Throws InputError, placed at
-/// the stage, for one that cannot be read.
-std::vector<std::string> read_block(const FlightPlan& plan, const pugi::xml_node& block,
-                                    const AutopilotSettings& settings, BlockState& state);
 
 }  // namespace flightwatt::path

@@ -46,7 +46,7 @@ std::size_t split_fields(std::string_view fields, std::vector<std::string_view>&
 double field_value(const DecodePlan::Target& target, std::string_view word);
 
 /// The assumption about the message because the .log or its unit is missing; empty without one.
-std::string assumption_of(const DecodePlan& plan);
+std::string describe_assumption(const DecodePlan& plan);
 
 /// Why a message, or its `field`, cannot be used.
 std::string describe_skipped(SkipReason reason, const DecodePlan& plan, std::size_t field);
@@ -56,7 +56,7 @@ MessageTable empty_table(const DecodePlan& plan);
 
 /// The sender's table of the plan's message, which is added if it is missing. Throws InputError, at `line`, for more
 /// senders than a network can have.
-MessageTable& table_of(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line);
+MessageTable& find_or_add_table(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line);
 
 /// Appends a row. value_of(target) is the raw number or NaN; on_missing(field) is called for each NaN.
 template <typename ValueOf, typename OnMissing>
