@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-/// Parameters of the estimators of autopilots and ground stations, and of simulators. Each name, unit and conversion:
-/// docs/exports.md.
+/// Input and result of the functions that write parameters for autopilots, ground stations and simulators. Each name,
+/// unit and conversion: docs/exports.md.
 namespace flightwatt::exchange {
 
-/// An aircraft for an estimator or a simulator. Absent values are not set there.
+/// An aircraft for an energy estimator or a simulator. A parameter whose value is absent here is not written.
 struct EstimatorInput {
     std::optional<mechanical::MechanicalModel> model = {};
     std::optional<battery::Battery> battery = {};
     double compute_w = 0.0;                      ///< mean power of the computer, in addition to the model's
-    std::optional<double> idle_w = {};           ///< with the motor off; default: the computer's
-    std::optional<double> reserve_percent = {};  ///< of charge at landing
+    std::optional<double> idle_w = {};           ///< power with the motor off; default: compute_w
+    std::optional<double> reserve_percent = {};  ///< charge to keep at landing
     std::optional<int> cells_in_series = {};     ///< default: the battery's, else the minimum for 4.25 V a cell
     int cells_in_parallel = 1;
 };

@@ -10,12 +10,12 @@
 
 namespace flightwatt::flight {
 
-/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown; the
-/// idle current over the rests with the motor off.
+/// Checks the power record of a flight by the rules of docs/methods.md. The closures are over the sorties, lift-off to
+/// touchdown; the idle current is over the rests with the motor off.
 PowerReport check_power_record(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
-/// The faults as the reason why a flight is excluded, and how to override this.
+/// Returns the faults as the reason why a flight is excluded, with how to override this.
 std::string describe_power_faults(const std::vector<std::string>& power_faults);
 
 /// Subtracts the idle current from current and power (times the voltage of the same time, measured or power over

@@ -10,13 +10,13 @@
 /// or replaced is read from its beginning.
 namespace flightwatt::live {
 
-/// .data lines of the standard input, until it is closed.
+/// Opens the standard input for .data lines, until it is closed.
 std::unique_ptr<MessageSource> open_standard_input();
 
-/// A .data file from its beginning, while the ground station appends to it.
+/// Opens a .data file, which is read from its beginning while the ground station appends to it.
 std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& path);
 
-/// A binary log that is being written: SD card (with frame times), or capture of a link or an XBee.
+/// Opens a binary log that is being written: SD card (with frame times), or capture of a link or an XBee.
 std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,
                                                  telemetry::MessageDictionary definitions);
 

@@ -13,7 +13,7 @@ namespace flightwatt::mission {
 /// unless allow_unplanned. Paths are relative to the file. Throws InputError with the location of the error.
 MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading = {});
 
-/// The same from text; `path` names it and is where relative paths start.
+/// Reads a mission from text as read_mission(). `path` names it, and relative paths begin in its folder.
 MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
                              const MissionReadOptions& reading = {});
 

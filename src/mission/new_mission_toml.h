@@ -9,26 +9,26 @@
 
 namespace flightwatt::mission {
 
-/// A component of a mission that is yet to be written.
+/// A component of a new mission.
 struct NewComponent {
     std::string name;
-    std::string profile;  ///< its file, as the mission is to name it
+    std::string profile;  ///< file of its profile
     compute::PowerProfile power;
 };
 
-/// Contents of a new mission. Files are named as the mission is to name them.
+/// The contents of a new mission. Files are named as in the mission.
 struct NewMission {
     std::string name;
-    std::string mechanical;
-    mechanical::MechanicalModel model;  ///< that file's
-    std::string battery;
-    battery::Battery pack;  ///< that file's
+    std::string mechanical;             ///< file of the mechanical model
+    mechanical::MechanicalModel model;  ///< content of that file
+    std::string battery;                ///< file of the battery
+    battery::Battery pack;              ///< content of that file
     std::vector<NewComponent> components = {};
     bool is_planned = false;  ///< the schedule is left to `flightwatt plan`
 };
 
-/// A mission file with every key of docs/missions.md explained: those that it can do without are commented out ("#key"
-/// without a blank), with values that fit the files. It simulates as it is, unless it is to be planned.
+/// Returns a mission file with every key of docs/missions.md explained: optional keys are commented out ("#key" without
+/// a blank), with values that fit the files. It can be simulated unchanged, unless it is to be planned.
 std::string new_mission_toml(const NewMission& mission);
 
 }  // namespace flightwatt::mission

@@ -12,12 +12,12 @@ namespace flightwatt::mission {
 /// A mission file with another schedule.
 struct PlannedMissionText {
     std::string text;
-    bool lost_comments = false;  ///< the keys are sorted and have no comments
+    bool lost_comments = false;  ///< true: the keys are sorted and have no comments
 };
 
-/// The mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]]; the rest is
-/// kept as written, with comments, where the notation permits. Lines end with \n. `compute` is the mission's. Names of
-/// files are relative to `folder`, where the result is written.
+/// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]]; the
+/// rest is kept as written, with comments, if the notation permits. Lines end with \n. `compute` is the mission's.
+/// Names of files are relative to `folder`, in which the result is written.
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
                                         const std::filesystem::path& folder);

@@ -7,11 +7,11 @@
 
 namespace flightwatt::path {
 
-/// Position of a flight on its path.
+/// The position of a flight on its path.
 struct PathFix {
-    std::optional<double> path_time_s = {};  ///< in the path's planned time; none: the positions are not on the path
-    bool is_on_path = true;                  ///< else it has left the path, at path_time_s
-    double distance_m = 0.0;                 ///< from there, now
+    std::optional<double> path_time_s = {};  ///< as planned time of the path; absent: no position is on it
+    bool is_on_path = true;                  ///< false: the flight left the path at path_time_s
+    double distance_m = 0.0;                 ///< present distance from path_time_s
 };
 
 /// Finds the position of a flight on its path, which begins where the cruise does, from the positions of the cruise up

@@ -10,22 +10,22 @@ namespace flightwatt::path {
 
 /// Values that a plan leaves to the autopilot's settings.
 struct AutopilotSettings {
-    std::optional<double> radius_m;  ///< of circles for which the plan states none
-    double airspeed_m_per_s = 0.0;   ///< for circles that end after a time; 0: they are flown once
+    std::optional<double> radius_m;  ///< radius of circles for which the plan states none
+    double airspeed_m_per_s = 0.0;   ///< airspeed for circles that end after a time; 0: they are flown once
 };
 
 /// The movements of a plan, in the order of the flight.
 struct PlanEntries {
     std::vector<PathEntry> entries;
     std::vector<std::string> not_flown = {};  ///< "line 80: the circle around STDBY has no end: it is flown once"
-    bool starts_at_first_place = false;       ///< as PathDefaults
+    bool starts_at_first_place = false;       ///< see PathDefaults
 };
 
-/// A block of a flight plan, read on its own; or the whole mission of another plan.
+/// A block of a flight plan, read alone; or the whole mission of a plan in another format.
 struct PlanBlock {
     std::string name;
     std::size_t line = 0;    ///< 0: unknown
-    std::string flown = {};  ///< "5 legs, 1.5 circles"; empty if nothing is
+    std::string flown = {};  ///< summary of what is flown: "5 legs, 1.5 circles"; empty if nothing is
     double length_m = 0.0;
     std::vector<std::string> not_flown = {};
 };

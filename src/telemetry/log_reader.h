@@ -18,11 +18,12 @@ namespace flightwatt::telemetry {
 TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
-/// The same for a text that may have no telemetry. Throws InputError only for more than 300 senders.
+/// Reads the requested messages as read_telemetry(), from a text that may have no telemetry. Throws InputError only for
+/// more than 300 senders.
 TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
                              std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
 
-/// Names and counts of the messages in a .data text, most frequent first; at most the first thousand names.
+/// Returns names and counts of the messages in a .data text, most frequent first; at most the first thousand names.
 std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view text);
 
 }  // namespace flightwatt::telemetry

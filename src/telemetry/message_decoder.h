@@ -13,24 +13,25 @@
 
 namespace flightwatt::telemetry {
 
-/// Decodes single messages as they arrive into the rows that parse_telemetry gives for a whole log.
+/// Decodes single messages as they arrive into the same rows that parse_telemetry() reads from a whole log.
 class MessageDecoder {
   public:
     using Skipped = std::map<std::string, std::size_t, std::less<>>;
 
+    /// Decodes the requested messages by the definitions of a .log, else by the built-in ones.
     MessageDecoder(const std::optional<LogConfiguration>& configuration, const std::vector<MessageRequest>& wanted);
     ~MessageDecoder();
     MessageDecoder(const MessageDecoder&) = delete;
     MessageDecoder& operator=(const MessageDecoder&) = delete;
 
-    /// Decodes "ENERGY 57 11.62 1.64". If `values` of the fields are given (NaN for text and arrays), only the name and
-    /// arrays are read from the text. The table has one row and is valid until the next call; nullptr for a message
-    /// that is not requested, or not usable (and counted).
+    /// Decodes a message such as "ENERGY 57 11.62 1.64". If `values` of the fields are given (NaN for text and arrays),
+    /// only the name and arrays are read from the text. The table has one row and is valid until the next call; nullptr
+    /// for a message that is not requested, or not usable (and counted).
     const MessageTable* decode(double time_s, std::string_view message, std::span<const double> values = {});
     /// Starts another log: without a .log its messages may have other built-in definitions.
     void restart();
 
-    /// Number of unusable messages and values, by reason.
+    /// Returns the number of unusable messages and values, by reason.
     const Skipped& skipped() const { return skipped_; }
     const std::vector<AssumedDefinition>& assumed_definitions() const { return assumed_; }
 

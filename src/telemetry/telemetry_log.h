@@ -27,7 +27,7 @@ struct Column {
     std::string field;
     std::optional<units::Quantity> quantity;
     std::vector<double> values;
-    bool is_integer = false;  ///< as an autopilot's log stores it; set for these logs only
+    bool is_integer = false;  ///< the log stores whole numbers; set for logs of other autopilots only
 };
 
 /// The rows of one message of one sender, in the order of the file.
@@ -35,10 +35,10 @@ struct MessageTable {
     std::string message;
     std::vector<double> time_s;
     std::vector<Column> columns;
-    std::vector<std::size_t> places = {};  ///< of the rows in a file: line or byte, from 1, rising; empty otherwise
+    std::vector<std::size_t> places = {};  ///< line or byte of each row in the file, from 1, rising; may be empty
 
     bool empty() const { return time_s.empty(); }
-    /// The column of `field`; nullptr if the log's definition has none.
+    /// Returns the column of `field`; nullptr if the log's definition has none.
     const Column* column(std::string_view field) const;
 };
 
@@ -47,40 +47,42 @@ struct SenderLog {
     std::string id;
     std::vector<MessageTable> tables;
 
-    /// The table of `message`; nullptr if the sender sent none.
+    /// Returns the table of `message`; nullptr if the sender sent none.
     const MessageTable* table(std::string_view message) const;
 };
 
+/// The requested messages of a log, in columns.
 struct TelemetryLog {
     std::filesystem::path data_file;
     std::string flight;
     std::optional<LogConfiguration> configuration;  ///< absent without a .log
     std::vector<SenderLog> senders;                 ///< in the order of their first requested line
     std::vector<SkippedLines> skipped;
-    std::vector<AssumedDefinition> assumed_definitions;  ///< without a .log, or without its units
-    std::size_t lines = 0;
+    std::vector<AssumedDefinition> assumed_definitions;  ///< assumptions as the .log or its units are missing
+    std::size_t lines = 0;                               ///< number of lines in the file
 };
 
-/// What the log of another autopilot states in addition to the columns of its messages.
+/// Information in the log of another autopilot in addition to its messages.
 struct LogFacts {
     std::map<std::string, std::string> information;  ///< ULog's, by key: "sys_uuid"
     std::map<std::string, double> parameters;
     std::vector<std::string> texts;  ///< messages to the user, at most a thousand
     std::size_t dropouts = 0;        ///< times at which ULog's logger lost data
-    double dropout_s = 0.0;          ///< in all
+    double dropout_s = 0.0;          ///< their total duration
 };
 
-/// A message, its number in the log, and its fields.
+/// A message of a log: its name, its number in the log, and its fields.
 struct AutopilotMessage {
     std::string name;
     std::size_t count = 0;
     std::vector<std::string> fields;
 };
 
+/// The log of another autopilot.
 struct AutopilotLog {
     TelemetryLog log = {};  ///< of one sender, with an empty id
     LogFacts facts = {};
-    std::vector<AutopilotMessage> messages = {};  ///< all, the most frequent first
+    std::vector<AutopilotMessage> messages = {};  ///< all messages, the most frequent first
 };
 
 }  // namespace flightwatt::telemetry

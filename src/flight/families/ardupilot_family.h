@@ -4,7 +4,7 @@
 
 namespace flightwatt::flight {
 
-/// Returns where ArduPilot's DataFlash logs have the quantities of a flight.
+/// Returns the messages and fields of ArduPilot's DataFlash logs that have the quantities of a flight.
 const LogFamily& ardupilot_family();
 
 }  // namespace flightwatt::flight

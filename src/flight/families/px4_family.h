@@ -4,10 +4,10 @@
 
 namespace flightwatt::flight {
 
-/// Returns where PX4's ULog has the quantities of a flight.
+/// Returns the topics and fields of PX4's ULog that have the quantities of a flight.
 const LogFamily& px4_family();
 
-/// Returns where sdlog2, the log of PX4 until 2017, has them.
+/// Returns the messages and fields of sdlog2, PX4's log until 2017, that have the quantities of a flight.
 const LogFamily& sdlog2_family();
 
 }  // namespace flightwatt::flight

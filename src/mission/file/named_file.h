@@ -7,7 +7,7 @@
 
 namespace flightwatt::mission {
 
-/// The file that a key names, relative to the mission file. Throws InputError at the key where it cannot be read.
+/// Returns the file that a key names, relative to the mission file. Throws InputError at the key if it cannot be read.
 std::filesystem::path named_file(const TomlTable& table, std::string_view key);
 
 }  // namespace flightwatt::mission

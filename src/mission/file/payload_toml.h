@@ -5,9 +5,9 @@
 
 namespace flightwatt::mission {
 
-/// Changes the mechanical model to the mission's payload_kg, if it is stated: its phases in proportion to the physical
-/// model's power, or, where the flights do not determine that, by their takeoff_mass_kg and an assumption, with a note
-/// and a wider spread. Throws InputError where neither is known.
+/// Changes the mechanical model for the mission's payload_kg, if that is stated: its phases in proportion to the power
+/// by the physical model, or, if the flights do not determine that, by the takeoff_mass_kg and an assumption, with a
+/// note and a wider spread. Throws InputError if neither is known.
 void apply_payload(const TomlTable& mission_table, MissionSetup& mission);
 
 }  // namespace flightwatt::mission

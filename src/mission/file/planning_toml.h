@@ -9,16 +9,16 @@
 /// are unknown, missing or out of range.
 namespace flightwatt::mission {
 
-/// The mission's [packs] without `home`, which read_cruise_path reads; none without one.
+/// Reads the mission's [packs] without `home`, which read_cruise_path() reads; std::nullopt without [packs].
 std::optional<Packs> read_packs(const TomlTable& mission);
 
-/// The `utility` of a component.
+/// Reads the `utility` of a component.
 Utility read_utility(const TomlTable& table, const compute::PowerProfile& profile);
 
-/// The mission's [plan], all of which may be absent.
+/// Reads the mission's [plan], all keys of which are optional.
 PlanSettings read_plan_settings(const TomlTable& mission, const compute::ComputeModel& compute);
 
-/// The mission's [policy]; none for a static one. `decide_every_s` stays 0 where it is not given.
+/// Reads the mission's [policy]; std::nullopt for a static one. `decide_every_s` is 0 if it is not given.
 std::optional<AdaptivePolicy> read_adaptive_policy(const TomlTable& mission);
 
 }  // namespace flightwatt::mission

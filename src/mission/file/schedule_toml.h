@@ -13,10 +13,10 @@ namespace flightwatt::mission {
 
 /// One entry of a schedule as it was written.
 struct ScheduleEntry {
-    std::optional<Phase> phase;  ///< none: any phase (only with otherwise)
-    bool otherwise = false;      ///< what no explicit entry covers
-    bool whole_phase = false;    ///< explicit, and without from, to or middle
-    double start_s = 0.0;        ///< since the phase began; not read if otherwise
+    std::optional<Phase> phase;  ///< absent: any phase (only with otherwise)
+    bool otherwise = false;      ///< the entry is for the time that no explicit entry covers
+    bool whole_phase = false;    ///< the entry is explicit, without from, to or middle
+    double start_s = 0.0;        ///< time since the phase began; unused if otherwise
     double end_s = 0.0;
     compute::Configuration run;
     Location where;
@@ -28,20 +28,20 @@ struct ScheduleEntry {
 std::vector<ScheduleEntry> read_schedule(const TomlTable& mission, const compute::ComputeModel& compute,
                                          const PerPhase<double>& duration_s);
 
-/// Segments in order that cover each instant of each phase exactly once: the explicit entries, then for what
-/// they leave of a phase its `otherwise`, then the mission's. `entries` is not empty. Throws InputError for
-/// two explicit entries at the same time, a gap that no `otherwise` fills, or an `otherwise` that is there
-/// twice or has nothing left to cover.
+/// Returns segments in order that cover each instant of each phase exactly once: the explicit entries, then for the
+/// rest of a phase its `otherwise`, then that of the mission. `entries` is not empty. Throws InputError for two
+/// explicit entries at the same time, a gap that no `otherwise` fills, or an `otherwise` that is stated twice or has
+/// nothing left to cover.
 Schedule resolve_schedule(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
-/// The segments of the explicit entries, in order: the fixed part of a schedule to be planned. Throws
+/// Returns the segments of the explicit entries, in order: the fixed part of a schedule to be planned. Throws
 /// InputError for two entries at the same time, and for `otherwise`, which would leave nothing to plan.
 Schedule resolve_fixed_segments(const std::vector<ScheduleEntry>& entries, const PerPhase<double>& duration_s);
 
-/// The phase at `phase`. Throws InputError for one that there is not, or that the mission does not fly.
+/// Reads the key `phase`. Throws InputError for an unknown phase, and for one that the mission does not fly.
 Phase read_flown_phase(const TomlTable& entry, const PerPhase<double>& duration_s);
 
-/// The time at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for anything else.
+/// Reads the time [s] at `key`: seconds, or percent ("40 %") of `duration_s`. Throws InputError for anything else.
 double read_time_s(const TomlTable& entry, std::string_view key, double duration_s);
 
 }  // namespace flightwatt::mission

@@ -170,11 +170,11 @@ void move_component(const ComponentSpread& spread, std::span<const double> z, st
     }
 }
 
+// Numbers that each flight needs for the battery and for the wind.
 constexpr std::size_t battery_draws = 5;
 constexpr std::size_t wind_draws = 2;
 constexpr double min_initial_soc_percent = 0.1;
 
-/// Numbers of the phases, the battery and the components before this one.
 bool initial_charge_varies(const MissionSetup& mission) { return mission.uncertainty.initial_soc_sd_percent > 0.0; }
 
 }  // namespace

@@ -14,24 +14,25 @@
 
 namespace flightwatt::report {
 
-/// The battery, as identified from the flights.
+/// The battery that was identified from the flights.
 struct ReportBattery {
-    std::vector<battery::DischargeRecord> records;  ///< of the flights used
+    std::vector<battery::DischargeRecord> records;  ///< discharge records of the flights used
     std::vector<Exclusion> exclusions;
-    std::vector<std::string> notes;  ///< pack changes within a log, counter resets
-    std::size_t usable = 0;          ///< usable flights; more than records where their number is limited
+    std::vector<std::string> notes;  ///< about pack changes within a log and counter resets
+    std::size_t usable = 0;          ///< number of usable flights; more than records if their number is limited
     std::optional<battery::BatteryIdentification> identified;
-    std::vector<battery::LeaveOneOutCheck> leave_one_out;  ///< one a record, or empty
-    std::string no_result_reason;                          ///< of missing results
+    std::vector<battery::LeaveOneOutCheck> leave_one_out;  ///< one for each record, or empty
+    std::string no_result_reason;                          ///< reason why there is no result
 };
 
-/// Identifies the battery from the flights with measured current and voltage, `max_flights` at equal steps; with the
-/// capacity and cells of the first pack of the missions that is of these flights. Throws UsageError as
+/// Identifies the battery from the flights with measured current and voltage, at most `max_flights` at equal steps,
+/// with the capacity and cells of the missions' first pack that these flights may have. Throws UsageError as
 /// identify_battery, and for another capacity than that pack's.
 ReportBattery identify_for_report(std::span<const ReportFlight> flights, const battery::IdentificationOptions& options,
                                   std::size_t max_flights, std::span<const mission::MissionVariant> missions = {});
 
-/// Parameters with intervals, voltages, errors of leave-one-out, open-circuit curve; or the reason for no battery.
+/// Returns the section of the battery: parameters with intervals, voltages, errors by leave-one-out, open-circuit
+/// curve; or the reason why no battery was identified.
 Section battery_section(const ReportBattery& battery);
 
 }  // namespace flightwatt::report

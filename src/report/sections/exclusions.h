@@ -14,7 +14,7 @@ struct Exclusion {
     std::string reason;
 };
 
-/// A row for each reason, with its flights.
+/// Returns a table with a row for each reason, with its flights.
 TextTable exclusions_table(std::span<const Exclusion> exclusions);
 
 }  // namespace flightwatt::report

@@ -11,15 +11,15 @@
 
 namespace flightwatt::report {
 
-/// Each mechanical model that is not in `shown` and each software once, schedules as Fig. 3 with the ranking, maps over
-/// the quality of service as Fig. 4. `missions` is not empty.
+/// Returns the sections of missions: each mechanical model that is not in `shown` and each software once, schedules as
+/// Fig. 3 with the ranking, maps over the quality of service as Fig. 4. `missions` is not empty.
 std::vector<Section> mission_sections(std::span<const SimulatedMission> missions,
                                       std::span<const mechanical::MechanicalModel> shown = {});
 
-/// Missions over several packs: a row for each flight.
+/// Returns the section of missions over several packs: a row for each flight.
 Section packs_section(std::span<const mission::PackFlights> missions);
 
-/// Schedules of missions on the flights' measured power. `replays` is not empty.
+/// Returns the section of the missions' schedules on the flights' measured power. `replays` is not empty.
 Section replay_section(std::span<const mission::Replay> replays);
 
 }  // namespace flightwatt::report

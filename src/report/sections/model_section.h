@@ -14,22 +14,23 @@
 
 namespace flightwatt::report {
 
-/// A mechanical model for a section.
+/// A mechanical model to show in a section.
 struct ReportModel {
     mechanical::MechanicalModel model;
     std::string origin;                                  ///< "Fitted to these flights."
-    flight::PerPhase<mechanical::CurveBand> bands = {};  ///< without times: unknown
+    flight::PerPhase<mechanical::CurveBand> bands = {};  ///< 95 % bands of the mean; unknown if without times
     std::optional<TextTable> table_one = {};
 };
 
-/// The model as Fig. 2 with Table I.
+/// Returns the section of a model: Fig. 2 with Table I.
 Section model_section(const ReportModel& model, const std::string& id);
 
-/// Errors of predictions by leave-one-out, compared with the baselines. `flights` is not empty; a warning is for
-/// `synthetic` ones.
+/// Returns the section of the errors of predictions by leave-one-out, compared with the baselines; with a warning if
+/// the flights are `synthetic`. `flights` is not empty.
 Section validation_section(const std::vector<mechanical::ValidatedFlight>& flights, bool synthetic = false);
 
-/// Power from airspeed and climb: figure, constants and trials. std::nullopt where it cannot be fitted.
+/// Fits the power by airspeed and climb and returns its section: figure, constants and trials. std::nullopt if it
+/// cannot be fitted.
 std::optional<Section> physical_section(std::span<const mechanical::MeasuredFlight> flights);
 
 }  // namespace flightwatt::report

@@ -11,14 +11,14 @@
 
 namespace flightwatt::report {
 
-/// Contents of the first section.
+/// The contents of the first section.
 struct PageSummary {
-    std::vector<SimulatedMission> missions;  ///< the worst first
-    std::vector<MissionAssessment> answers;  ///< one a mission
-    std::vector<mechanical::ValidatedFlight> validated;
-    std::optional<mechanical::MechanicalModel> model;  ///< the batch's
+    std::vector<SimulatedMission> missions;              ///< the worst first
+    std::vector<MissionAssessment> answers;              ///< one for each mission
+    std::vector<mechanical::ValidatedFlight> validated;  ///< predictions by leave-one-out; may be empty
+    std::optional<mechanical::MechanicalModel> model;    ///< model of the batch
     std::optional<battery::BatteryIdentification> pack;
-    std::vector<std::string> warnings;  ///< of the fits
+    std::vector<std::string> warnings;  ///< warnings of the fits
     std::vector<std::string> notes;     ///< missing parts of the page, with reasons
 };
 

@@ -9,14 +9,14 @@
 
 namespace flightwatt::report {
 
-/// The first screen: headline, a card for each mission (one is shown), their table, and the aircraft.
-/// `flights` may be empty.
+/// Returns the first screen: headline, a card for each mission (one is shown), their table, and the aircraft. `flights`
+/// may be empty.
 Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights);
 
-/// Warnings of the fits, and missing contents; std::nullopt without any.
+/// Returns the section of warnings of the fits and missing contents; std::nullopt without any.
 std::optional<Section> notes_section(const PageSummary& answers);
 
-/// The missions' states of charge in one drawing.
+/// Returns the section with the states of charge of all missions in one drawing.
 Section curves_section(std::span<const SimulatedMission> missions);
 
 }  // namespace flightwatt::report

@@ -10,8 +10,8 @@
 
 namespace flightwatt::report {
 
-/// A map for each flight with positions, on one scale: phases, charge every 5 minutes, and outlines below them.
-/// `battery` may be null; std::nullopt without positions.
+/// Returns the section with a map for each flight with positions, on one scale: phases, charge every 5 minutes, and
+/// outlines below them. `battery` may be null. std::nullopt without positions.
 std::optional<Section> tracks_section(const BatchContent& batch, const ReportBattery* battery,
                                       const std::vector<Outline>& outlines = {});
 
