@@ -45,7 +45,7 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
         try {
             if (!loaded.exclusion.empty()) throw InputError({file}, loaded.exclusion);
             auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
-                                                        ? of_circuit(loaded.data, circuit.value_or(1))
+                                                        ? select_circuit(loaded.data, circuit.value_or(1))
                                                         : loaded.data);
             for (const auto& text : found.notes)
                 cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});

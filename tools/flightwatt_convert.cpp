@@ -49,7 +49,7 @@ ConvertedLog convert_log(const flight::FlightFile& file) {
         };
         decoder.push(log.bytes, sink);
         decoder.flush(sink);
-        require_fitting(decoder.counts(), log);
+        require_matching_lengths(decoder.counts(), log);
         converted.counts = decoder.counts();
         return converted;
     });
@@ -156,7 +156,7 @@ int convert_to_series(const cli::StageCall& call, const flight::FlightFile& file
     if (call.output && !call.output->ends_with(".csv"))
         throw UsageError(fmt::format("{} becomes a series, which is a .csv, not {}", path, *call.output));
     auto recordings = flight::read_recordings(file, std::nullopt);
-    const auto used = flight::used_recording(recordings, file, std::nullopt);
+    const auto used = flight::choose_recording(recordings, file, std::nullopt);
     const auto series = std::move(recordings[used - 1].front());
     if (recordings.size() > 1)
         cli::note(call, fmt::format("{}: recording {} of {} is written; flightwatt parse --recording N writes another",

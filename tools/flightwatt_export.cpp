@@ -13,6 +13,9 @@
 #include "exchange/flown_track.h"
 #include "exchange/message_table.h"
 #include "exchange/model_text.h"
+#include "exchange/monitor_parameters.h"
+#include "exchange/px4_parameters.h"
+#include "exchange/simulator_parameters.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "report/report.h"
@@ -118,7 +121,7 @@ const Format& format_of(const cli::StageCall& call, const std::optional<std::str
                     names));
 }
 
-void require_fitting(const ExportInput& input, const Format& format) {
+void require_matching_lengths(const ExportInput& input, const Format& format) {
     if (format.kinds.contains(input.kind)) return;
     auto hint = fmt::format("a {} becomes {}", name_of(input.kind),
                             names_of_formats([&](const Format& other) { return other.kinds.contains(input.kind); }));
@@ -284,7 +287,7 @@ int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) 
     refuse_idle_options(call, format);
     std::vector<ExportInput> inputs;
     for (const auto& file : call.inputs) inputs.push_back({file, kind_of(file)});
-    for (const auto& input : inputs) require_fitting(input, format);
+    for (const auto& input : inputs) require_matching_lengths(input, format);
     require_few(inputs, format);
     auto result = exported(call, arguments, inputs, format);
     cli::write_result(call, result.text);

@@ -13,6 +13,7 @@
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
 #include "path/cruise_path.h"
+#include "path/plan_blocks.h"
 #include "path/plan_files.h"
 #include "stages.h"
 

@@ -9,7 +9,9 @@
 #include "cli/stage.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "mission/plan.h"
+#include "mission/planned_mission_toml.h"
 #include "stages.h"
 
 #include <array>

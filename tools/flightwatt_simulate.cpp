@@ -7,6 +7,7 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "mission/mission_file.h"
+#include "mission/planned_mission_toml.h"
 #include "mission/prepared_mission.h"
 #include "stages.h"
 

@@ -125,7 +125,7 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
     });
     constexpr std::size_t max_records = 60;
     for (const auto& note : add_state_of_health(flights, max_records, arguments.capacity_ah)) cli::note(call, note);
-    const auto trends = trends_of(flights);
+    const auto trends = estimate_trends(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, csv_of(flights),
                      {fmt::format("{} flight{}", flights.size(), flights.size() == 1 ? "" : "s"),

@@ -6,6 +6,7 @@
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
 #include "live/live_schedule.h"
+#include "live/live_state.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
 #include "report/page.h"
@@ -56,7 +57,7 @@ class LivePage {
         if (!server_) return;
         live::TimeCurve ahead;
         if (state.prediction && state.battery && state.battery->state)
-            ahead = soc_ahead(*basis_, *state.prediction, *state.battery->state, state.time_s);
+            ahead = predict_soc_curve(*basis_, *state.prediction, *state.battery->state, state.time_s);
         const auto event = cli::page_event(state, compute_, ahead);
         server_->publish(event.state, event.point);
     }

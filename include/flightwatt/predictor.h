@@ -11,33 +11,34 @@
 /// The live predictor as a library for other programs (docs/live.md).
 namespace flightwatt::live {
 
+/// Kinds of input of a predictor.
 enum class PredictorInput {
-    messages,  ///< of Paparazzi, as text or link frames
-    samples    ///< Sample
+    messages,  ///< messages of Paparazzi, as text or link frames
+    samples    ///< measurements as Sample
 };
 
-/// Files as for `flightwatt watch`; an empty name: none.
+/// Files and options as for `flightwatt watch`; an empty name means no file.
 struct PredictorSetup {
     std::string mission_file = {};           ///< with model, path, battery, reserve and schedule; or
     std::string model_file = {};             ///< a model, with `remaining_s`
     std::string battery_file = {};           ///< replaces the mission's
     std::string definitions_file = {};       ///< .log or messages.xml: required for frames; default of text: built-in
     std::string aircraft_id = {};            ///< empty: the first that flies
-    std::optional<double> remaining_s = {};  ///< of the cruise, from any moment on
-    std::optional<double> initial_soc_percent = {};  ///< none: by the resting voltage
-    bool replan = false;                             ///< at every slot of the mission's plan
+    std::optional<double> remaining_s = {};  ///< rest of the cruise, from any moment
+    std::optional<double> initial_soc_percent = {};  ///< absent: by the resting voltage
+    bool replan = false;                             ///< plans again at every slot of the mission's plan
     PredictorInput input = PredictorInput::messages;
-    std::size_t max_rows = 30'000;  ///< of messages in memory; beyond, they are thinned
+    std::size_t max_rows = 30'000;  ///< maximum number of messages in memory; more are thinned
 };
 
-/// Measurements at a time; NaN: unknown. Unknown power is voltage times current.
+/// Measurements at a time; NaN if unknown. Unknown power is voltage times current.
 struct Sample {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double time_s = unknown;
     double voltage_v = unknown;
     double current_a = unknown;
     double power_w = unknown;
-    double charge_ah = unknown;  ///< drawn, by a counter
+    double charge_ah = unknown;  ///< charge drawn, by a counter
     double throttle_percent = unknown;
     double altitude_m = unknown;
     double climb_m_per_s = unknown;
@@ -45,17 +46,18 @@ struct Sample {
     double bank_deg = unknown;
 };
 
+/// Phases of a flight, and the time on the ground.
 enum class FlightPhase { ground, takeoff, cruise, landing };
 
 /// Prediction from a moment in cruise to the touchdown.
 struct LandingPrediction {
-    double remaining_s = 0.0;  ///< of the cruise
+    double remaining_s = 0.0;  ///< rest of the cruise
     double landing_s = 0.0;    ///< duration of the landing after it
     double energy_wh = 0.0;    ///< from now to the touchdown, with its 95 % interval
     double energy_low_wh = 0.0;
     double energy_high_wh = 0.0;
     double total_energy_wh = 0.0;   ///< from the lift-off to the touchdown
-    double expected_power_w = 0.0;  ///< of the next load
+    double expected_power_w = 0.0;  ///< power of the next load
     // With a battery:
     std::optional<double> soc_percent = {};           ///< at the touchdown, or where the battery fails before
     std::optional<double> worst_soc_percent = {};     ///< at the high end of the energy
@@ -66,22 +68,23 @@ struct LandingPrediction {
     std::optional<double> turn_home_in_s = {};        ///< latest moment to leave the path for home, or to land
 };
 
-/// The mission's schedule, or with `replan` the current plan.
+/// The state of the mission's schedule, or with `replan` of the current plan.
 struct ScheduleState {
-    double utility_per_s = 0.0;               ///< of the current configuration
-    std::optional<double> next_in_s = {};     ///< to the next change
-    std::optional<double> rest_utility = {};  ///< mean a second to the mission's end
+    double utility_per_s = 0.0;               ///< utility of the current configuration
+    std::optional<double> next_in_s = {};     ///< time to the next change
+    std::optional<double> rest_utility = {};  ///< mean utility per second to the mission's end
     bool keeps_reserve = true;
-    std::size_t changes = 0;  ///< since the flight began
+    std::size_t changes = 0;  ///< number of changes since the flight began
 };
 
 /// A component of the mission's computer.
 struct ComponentState {
     std::string name;
     bool runs = false;
-    std::vector<double> quality = {};  ///< a value for each QoS parameter; empty where it is off
+    std::vector<double> quality = {};  ///< a value for each QoS parameter; empty if it is off
 };
 
+/// A warning for the pilot about the flight.
 struct Alarm {
     std::string kind;    ///< "reserve", "model", "silence" or "voltage"
     std::string grade;   ///< "caution" or "alarm"
@@ -89,9 +92,9 @@ struct Alarm {
     std::string action;  ///< recommended, with the time left
 };
 
-/// The state at a moment.
+/// The state of a flight at a moment, with the prediction.
 struct PredictorState {
-    double time_s = 0.0;  ///< of the latest message
+    double time_s = 0.0;  ///< time of the latest message
     FlightPhase phase = FlightPhase::ground;
     bool landed = false;
     bool began_in_air = false;  ///< the flight before the first message is unknown
@@ -102,13 +105,13 @@ struct PredictorState {
     std::optional<double> altitude_m = {};
     std::optional<double> soc_percent = {};
     std::optional<LandingPrediction> landing = {};
-    std::string waits_for = {};  ///< reason where there is no prediction
+    std::string waits_for = {};  ///< reason why there is no prediction yet; empty if there is one
     std::optional<ScheduleState> decision = {};
-    std::vector<ComponentState> components = {};  ///< all of the mission, by the last decision
+    std::vector<ComponentState> components = {};  ///< all components of the mission, by the last decision
     std::vector<Alarm> alarms = {};
-    std::size_t rows = 0;      ///< in memory
-    std::size_t dropped = 0;   ///< pushes that returned false, since the start
-    std::size_t unusable = 0;  ///< lines, frames and values, since the start
+    std::size_t rows = 0;      ///< messages in memory
+    std::size_t dropped = 0;   ///< number of pushes that returned false, since the start
+    std::size_t unusable = 0;  ///< number of unusable lines, frames and values, since the start
     std::string failure = {};  ///< reason why the update failed (out of memory); else empty
 };
 
@@ -121,29 +124,30 @@ class Predictor {
     Predictor(const Predictor&) = delete;
     Predictor& operator=(const Predictor&) = delete;
 
-    // Input that is pushed is stored. False, and counted, without memory and for the other kind of input.
+    // A push stores its input. Without memory, and for the other kind of input, it returns false, which is counted.
 
-    /// A line of a .data file: "73.2 20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
+    /// Adds a line of a .data file: "73.2 20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
     virtual bool push_line(std::string_view line) noexcept = 0;
-    /// A message without its time: "20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
+    /// Adds a message without its time: "20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
     virtual bool push_message(double time_s, std::string_view message) noexcept = 0;
-    /// Bytes of a link (pprzlink 1 or 2, plain or XBee), in chunks of any size, received at `time_s`.
+    /// Adds bytes of a link (pprzlink 1 or 2, plain or XBee), in chunks of any size, received at `time_s`.
     virtual bool push_frames(double time_s, std::string_view bytes) noexcept = 0;
+    /// Adds measurements.
     virtual bool push_sample(const Sample& sample) noexcept = 0;
 
-    /// Updates the prediction; once a second of flight suffices. `silent_s`: time since
-    /// the last input. The result is valid until the next update.
+    /// Updates the prediction; once a second of flight suffices. `silent_s` is the time since the last input. The
+    /// result is valid until the next update.
     virtual const PredictorState& update(double silent_s = 0.0) noexcept = 0;
-    /// No more input will follow: accepts messages whose times are not confirmed yet, and updates.
+    /// Ends the input: accepts messages whose times are not confirmed yet, and updates.
     virtual const PredictorState& end() noexcept = 0;
-    /// The result of the last update.
+    /// Returns the result of the last update.
     virtual const PredictorState& state() const noexcept = 0;
 };
 
 /// A predictor, or an error.
 struct PredictorOrError {
     std::unique_ptr<Predictor> predictor;
-    std::string error;  ///< as of the programs: file, position, finding, action
+    std::string error;  ///< error text as of the programs: file, position, finding, action
 };
 
 /// Reads the files, plans the mission if necessary, and allocates the memory.

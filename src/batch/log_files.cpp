@@ -8,6 +8,7 @@
 #include "telemetry/autopilot_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/ulog_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +34,7 @@ bool is_result(const std::filesystem::path& csv) {
 /// of other tables those that are flights.
 bool is_log_name(const std::filesystem::path& path, const std::optional<std::filesystem::path>& columns) {
     auto name = path.filename().string();
-    if (const auto log = columns ? std::nullopt : telemetry::ulog_tables_of(path)) return log->filename() == name;
+    if (const auto log = columns ? std::nullopt : telemetry::find_ulog_tables(path)) return log->filename() == name;
     if (flight::is_flight_csv(path, columns)) return !is_result(path);
     for (const std::string_view packed : {".gz", ".bz2", ".xz", ".zst"}) {
         if (!name.ends_with(packed)) continue;
@@ -184,7 +185,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
             throw InputError({path.empty() ? "''" : path}, cause,
                              "expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
         }
-        const auto tables = columns ? std::nullopt : telemetry::ulog_tables_of(path);
+        const auto tables = columns ? std::nullopt : telemetry::find_ulog_tables(path);
         logs.push_back({tables ? tables->string() : path});
     };
     for (const auto& input : inputs) add(input, true);

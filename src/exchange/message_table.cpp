@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
+#include "telemetry/log_reader.h"
 #include "telemetry/message_definition.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ telemetry::TelemetryLog read_message(const flight::FlightFile& file,
 }
 
 [[noreturn]] void refuse_absent(const flight::FlightFile& file, const std::string& message, bool is_defined) {
-    const auto names = flight::census_of(file);
+    const auto names = flight::list_message_counts(file);
     const auto is_it = [&](const std::string& name) { return name.starts_with(message + " "); };
     if (!is_defined && std::ranges::any_of(names, is_it))
         throw InputError({file.path().string()}, fmt::format("has no definition of {}", message),

@@ -1,7 +1,8 @@
+#include "exchange/monitor_parameters.h"
+
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "exchange/autopilot_parameters.h"
 #include "exchange/estimators/pack_summary.h"
 
 #include <array>
@@ -93,7 +94,7 @@ ParameterText to_paparazzi(const EstimatorInput& input) {
                          "fit one with flightwatt fit --model-kind physical");
     }
     constexpr int airspeeds = 101;
-    const auto power = fitted_polynomial(model.physical->airspeed_m_per_s, airspeeds, 2, [&](double airspeed) {
+    const auto power = fit_polynomial(model.physical->airspeed_m_per_s, airspeeds, 2, [&](double airspeed) {
         return mechanical::power_w(*model.physical, {airspeed, 0.0, 1.0}) + input.compute_w;
     });
     const double land_wh = phase_energy_wh(input, flight::Phase::landing);

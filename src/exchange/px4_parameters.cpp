@@ -1,7 +1,8 @@
+#include "exchange/px4_parameters.h"
+
 #include "base/error.h"
 #include "base/units.h"
 #include "battery/landing_forecast.h"
-#include "exchange/autopilot_parameters.h"
 #include "exchange/estimators/pack_summary.h"
 
 #include <fmt/format.h>
@@ -71,7 +72,7 @@ ParameterText to_px4(const EstimatorInput& input) {
     require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
     result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah) + px4_line("BAT1_R_INTERNAL", cell_ohm);
     if (pack.battery.thevenin) {
-        const auto line = fitted_line(pack.battery, PackSummary{}.lowest_percent);
+        const auto line = fit_voltage_line(pack.battery, PackSummary{}.lowest_percent);
         result.text += voltage_lines(pack, line);
         result.notes.push_back(
             fmt::format("PX4's state of charge by voltage is a line: from 10 to 100 % its error is up to {:.0f} points",
@@ -95,7 +96,7 @@ ParameterText to_px4_sitl(const EstimatorInput& input) {
     const double cruise_w = mean_power_w(input, flight::Phase::cruise);
     const double full_s = drain_s(*input.battery, cruise_w);
     require_up_to(full_s, max_drain_s, "SIM_BAT_DRAIN", "s");
-    const auto line = fitted_line(pack.battery, pack.lowest_percent);
+    const auto line = fit_voltage_line(pack.battery, pack.lowest_percent);
     const double drop_v = pack.battery.resistance_ohm * cruise_current_a(input, pack);
     ParameterText result{px4_head(px4_sitl)};
     result.text +=

@@ -1,5 +1,6 @@
+#include "exchange/simulator_parameters.h"
+
 #include "base/units.h"
-#include "exchange/autopilot_parameters.h"
 #include "exchange/estimators/pack_summary.h"
 
 #include <sstream>
@@ -37,7 +38,7 @@ ParameterText to_gazebo(const EstimatorInput& input) {
     constexpr auto gazebo = "Gazebo's LinearBatteryPlugin";
     const auto pack = summarize_pack(input, gazebo);
     required_model(input, gazebo);
-    const auto line = fitted_line(pack.battery, pack.lowest_percent);
+    const auto line = fit_voltage_line(pack.battery, pack.lowest_percent);
     ParameterText result;
     const auto comment = "\nWritten by flightwatt export " FLIGHTWATT_VERSION ", for a <model>\n" +
                          note_limits({voltage_limit(line), resistance_limit, power_limit(input)}, "", result);

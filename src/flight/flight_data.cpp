@@ -100,7 +100,7 @@ Diagnostics selection_diagnostics(const FlightData& data) {
     return found;
 }
 
-FlightData of_circuit(FlightData data, std::size_t number) {
+FlightData select_circuit(FlightData data, std::size_t number) {
     if (number == 0 || number > data.circuits.size()) {
         std::vector<std::string> names;
         for (const auto& circuit : data.circuits) names.push_back(circuit.name);

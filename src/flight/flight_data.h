@@ -21,9 +21,9 @@ struct ChosenTrack : Track {
     std::vector<std::string> not_chosen = {};  ///< sources that were rejected, with the reason
 };
 
-/// Packs at one voltage, and the tracks of their sum.
+/// Battery packs at one voltage, and the tracks of their sum.
 struct Circuit {
-    std::string name;  ///< of its monitors: "BAT 0 and BAT 1"
+    std::string name;  ///< its battery monitors: "BAT 0 and BAT 1"
     double mean_power_w = 0.0;
     Track power_w = {};
     Track voltage_v = {};  ///< of the pack with the most power
@@ -68,41 +68,43 @@ struct FlightData : FlightInfo {
     ChosenTrack ground_altitude_m;
     ChosenTrack payload_kg;
 
-    std::vector<Circuit> circuits;       ///< of batteries that the log numbers, the one with the most energy first
-    std::vector<Track> other_altitudes;  ///< that were not chosen
+    std::vector<Circuit> circuits;  ///< those of a log that numbers its batteries, the one with the most energy first
+    std::vector<Track> other_altitudes;                        ///< candidates of the altitude that were not chosen
     double last_s = -std::numeric_limits<double>::infinity();  ///< see last_time_s()
 
     bool is_rotorcraft() const { return firmware == "rotorcraft"; }
 };
 
-/// A quantity, and where FlightData has it.
+/// A quantity, and the member of FlightData that has it.
 struct TrackMember {
     std::string_view name;
     ChosenTrack FlightData::*track;
 };
 
-/// All quantities, in the order of the series file's columns.
+/// Returns all quantities, in the order of the series file's columns.
 std::span<const TrackMember> track_members();
 
-/// First and last value of a track; std::nullopt for an empty one.
+/// Returns the first value of a track; std::nullopt for an empty one.
 std::optional<double> first_value(const Track& track);
+/// Returns the last value of a track; std::nullopt for an empty one.
 std::optional<double> last_value(const Track& track);
 
-/// Source of each track that the flight has, by the name of the track.
+/// Returns the source of each track that the flight has, by the name of the track.
 std::map<std::string, std::string> track_sources(const FlightData& data);
 
-/// Findings about the log and the choice of its tracks: assumed layouts, rejected sources, removed samples, skipped lines.
+/// Returns the findings about the log and the choice of its tracks: assumed layouts, rejected sources, removed samples,
+/// skipped lines.
 Diagnostics selection_diagnostics(const FlightData& data);
 
-/// The data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if it has no such
-/// circuit.
-FlightData of_circuit(FlightData data, std::size_t number);
+/// Returns the data with voltage, current, charge and power of one circuit, counted from 1. Throws InputError if it has
+/// no such circuit.
+FlightData select_circuit(FlightData data, std::size_t number);
 
-/// Why there is no measured power; empty if there is.
+/// Returns the reason why there is no measured power; empty if there is.
 std::string no_power_reason(const FlightData& data);
 
-/// Throws InputError if there is no measured power, or several recordings are in one log. `messages`: what the log has
-/// instead.
+/// Throws InputError if there is no measured power, or several recordings are in one log. The error lists `messages`,
+/// which the log has instead.
 void require_power(const FlightData& data, const std::string& messages = "");
 
 }  // namespace flightwatt::flight

@@ -4,12 +4,16 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/number.h"
+#include "flight/families/ardupilot_family.h"
 #include "flight/families/log_family.h"
 #include "flight/families/mapped_csv.h"
+#include "flight/families/px4_family.h"
 #include "flight/flight_identity.h"
 #include "flight/series_file.h"
 #include "flight/telemetry_series.h"
+#include "telemetry/log_reader.h"
 #include "telemetry/recordings.h"
+#include "telemetry/ulog_folder.h"
 
 #include <algorithm>
 #include <limits>
@@ -179,7 +183,7 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
                        const std::optional<std::filesystem::path>& messages,
                        const std::optional<std::filesystem::path>& columns)
     : path_(path) {
-    const auto tables = columns ? std::nullopt : telemetry::ulog_tables_of(path);
+    const auto tables = columns ? std::nullopt : telemetry::find_ulog_tables(path);
     std::error_code error;
     const bool is_csv = boost::iequals(path.extension().string(), ".csv") || is_flight_csv(path, columns);
     is_series_ = !tables && is_csv && std::filesystem::is_regular_file(path, error);
@@ -218,7 +222,7 @@ telemetry::MessageDictionary FlightFile::definitions() const {
     return telemetry::parse_message_dictionary(*log_text_, log_file_);
 }
 
-std::vector<std::string> census_of(const FlightFile& file) {
+std::vector<std::string> list_message_counts(const FlightFile& file) {
     std::vector<std::string> names;
     if (file.is_series()) return names;
     if (file.autopilot()) {
@@ -227,7 +231,7 @@ std::vector<std::string> census_of(const FlightFile& file) {
         return names;
     }
     const auto counts = file.framing()
-                            ? with_binary_log(file, [](const auto& log) { return census_of_binary_messages(log); })
+                            ? with_binary_log(file, [](const auto& log) { return count_binary_messages(log); })
                             : telemetry::count_messages(file.text());
     for (const auto& [name, count] : counts) names.push_back(fmt::format("{} {}", name, count));
     return names;

@@ -11,32 +11,33 @@
 /// Identification of flights and aircraft by content rather than by file name.
 namespace flightwatt::flight {
 
-/// Start of a log by the ground station's clock, from its name: "20_07_05__10_26_44" anywhere in it. std::nullopt
-/// without a valid time.
+/// Returns the start of a log by the ground station's clock, from its name: "20_07_05__10_26_44" anywhere in it.
+/// std::nullopt without a valid time.
 std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name);
 
-/// Summary of a flight's samples.
+/// Summary of a flight's samples, which identifies it.
 struct FlightContent {
     std::uint64_t fingerprint = 0;  ///< of all values of altitude, voltage, current and power; 0: all are constant
-    bool has_definitions = true;    ///< there is a .log
+    bool has_definitions = true;    ///< the log has a .log
 
     bool operator==(const FlightContent&) const = default;
 };
 
-/// Files with the same samples have equal fingerprints: under any name, compressed, as text or binary, as a log or a
-/// series CSV. Times do not count.
+/// Summarizes a series. Files with the same samples have equal fingerprints: under any name, compressed, as text or
+/// binary, as a log or a series CSV. Times are not included.
 FlightContent content_of(const FlightSeries& series);
 
-/// Name of a synthetic aircraft without a .log.
+/// The name of a synthetic aircraft without a .log.
 inline constexpr auto unnamed_synthetic = "synthetic";
 
-/// Whether `flightwatt synthesize` wrote the log: its aircraft have such names.
+/// Returns whether `flightwatt synthesize` wrote the log, by the aircraft's name.
 bool is_synthetic(const std::string& aircraft_name);
 
-/// Whether a simulator of an autopilot recorded the log: its aircraft's name has SITL or HITL, or ends in the word NPS.
+/// Returns whether a simulator of an autopilot recorded the log: the aircraft's name has SITL or HITL, or ends in the
+/// word NPS.
 bool is_simulated(const std::string& aircraft_name);
 
-/// "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "PX4 SITL (SIMULATED)", "unknown".
+/// Returns a text for an aircraft: "20 Twinstar", "7 Opterra_synthetic (SYNTHETIC)", "PX4 SITL (SIMULATED)", "unknown".
 std::string describe_aircraft(const std::string& id, const std::string& name);
 
 }  // namespace flightwatt::flight

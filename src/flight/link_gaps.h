@@ -7,24 +7,24 @@
 #include <string>
 #include <vector>
 
-/// Times in flight in which nothing arrived, as where a link was lost: the aircraft draws energy in them that
-/// no sample shows, and a straight line from the sample before to the one after is a guess.
+/// Times in flight without any message, as after a loss of the link: no sample shows the energy that the aircraft draws
+/// in them, and a straight line from the sample before to the one after is a guess.
 namespace flightwatt::flight {
 
-/// A time without a sample of the power.
+/// An interval without a sample of the power.
 struct LinkGap : TimeInterval {
-    bool is_counted = false;  ///< its energy is by an on-board counter
+    bool is_counted = false;  ///< its energy was taken from an on-board counter
 };
 
-/// Fills each gap of the power of more than a minute with samples that have the energy of the on-board counter, or of
-/// that of charge at the mean of the voltages around the gap, and the current likewise; returns these gaps. One without
-/// such a counter, or with one that ran back or did not count in it, is left as it is.
+/// Fills each gap of the power of more than a minute with samples, and the current likewise, and returns these gaps.
+/// The energy is that of the on-board counter, else that of the charge counter at the mean of the voltages around the
+/// gap. A gap without such a counter, or whose counter ran back or did not count, is left unchanged.
 std::vector<LinkGap> bridge_link_gaps(FlightData& data);
 
 /// Returns a warning for each gap within these sorties.
 std::vector<std::string> gap_warnings(const std::vector<LinkGap>& gaps, std::span<const Sortie> sorties);
 
-/// Names the first gap within these sorties whose energy is unknown; empty without one.
+/// Returns a text about the first gap within these sorties whose energy is unknown; empty without one.
 std::string unknown_energy_reason(const std::vector<LinkGap>& gaps, std::span<const Sortie> sorties);
 
 }  // namespace flightwatt::flight

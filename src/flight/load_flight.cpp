@@ -4,6 +4,7 @@
 #include "flight/flight_identity.h"
 #include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
+#include "flight/power_check.h"
 #include "flight/select.h"
 
 #include <algorithm>
@@ -19,9 +20,9 @@ namespace {
 constexpr std::size_t min_altitudes = 2;  // for segmentation
 
 /// "GPS 310, ALIVE 12, ...".
-std::string shown_census(const FlightFile& file) {
+std::string describe_message_counts(const FlightFile& file) {
     constexpr std::size_t shown = 12;
-    auto names = census_of(file);
+    auto names = list_message_counts(file);
     const bool more = names.size() > shown;
     names.resize(std::min(names.size(), shown));
     return fmt::format("{}{}", fmt::join(names, ", "), more ? ", ..." : "");
@@ -32,7 +33,7 @@ FlightSeries choose_series(const FlightFile& file, Candidates candidates, bool p
     auto series = choose_aircraft(std::move(candidates), of_others);
     const auto data = select_tracks(series);
     const bool needs_power = power_required || data.altitude_m.time_s.size() < min_altitudes;
-    if (data.clock_restart || (needs_power && data.power_w.empty())) require_power(data, shown_census(file));
+    if (data.clock_restart || (needs_power && data.power_w.empty())) require_power(data, describe_message_counts(file));
     return series;
 }
 
@@ -126,8 +127,8 @@ LoadedFlight load_candidates(const FlightFile& file, Candidates candidates, cons
 FlightFile::FlightFile(const std::filesystem::path& path, const LoadOptions& options)
     : FlightFile(path, options.max_log_bytes, options.messages, options.columns) {}
 
-std::size_t used_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
-                           const std::optional<std::size_t>& requested) {
+std::size_t choose_recording(const std::vector<Candidates>& recordings, const FlightFile& file,
+                             const std::optional<std::size_t>& requested) {
     if (requested && *requested > recordings.size()) {
         throw InputError({file.path().string()},
                          fmt::format("has no recording {}: there are {}", *requested, recordings.size()));
@@ -148,7 +149,7 @@ std::size_t used_recording(const std::vector<Candidates>& recordings, const Flig
 
 Candidates read_candidates(const FlightFile& file, const std::optional<std::string>& aircraft, bool required) {
     auto recordings = read_recordings(file, aircraft, required);
-    return std::move(recordings[used_recording(recordings, file, std::nullopt) - 1]);
+    return std::move(recordings[choose_recording(recordings, file, std::nullopt) - 1]);
 }
 
 FlightSeries choose_aircraft(Candidates candidates, bool of_others) {
@@ -228,7 +229,7 @@ LoadedFile load_flights(const FlightFile& file, const LoadOptions& options) {
     auto recordings = read_recordings(file, options.aircraft, options.aircraft_required);
     LoadedFile loaded{.recordings = recordings.size()};
     const bool is_only = options.recording || recordings.size() == 1;
-    const auto first = is_only ? used_recording(recordings, file, options.recording) : 1;
+    const auto first = is_only ? choose_recording(recordings, file, options.recording) : 1;
     for (auto number = first; number <= (is_only ? first : recordings.size()); ++number) {
         try {
             loaded.flights.push_back(load_candidates(file, std::move(recordings[number - 1]), options));

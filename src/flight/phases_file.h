@@ -8,8 +8,8 @@
 
 namespace flightwatt::flight {
 
-/// The phases CSV: sortie, phase, start_s, end_s, duration_s, samples, mean_power_w, energy_wh, ... and the evidence at
-/// both edges; unknown values are empty cells.
+/// Returns the phases as CSV: sortie, phase, start_s, end_s, duration_s, samples, mean_power_w, energy_wh, ... and the
+/// evidence at both edges; unknown values are empty cells.
 std::string phases_csv(const FlightData& data, const FlightPhases& phases);
 
 /// Reads a phases CSV: the sorties with their phases and the evidence at the edges, without statistics and heights.

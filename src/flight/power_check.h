@@ -1,48 +1,21 @@
 #pragma once
 
-#include "base/diagnostic.h"
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
+#include "flight/power_report.h"
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace flightwatt::flight {
 
-/// Reading of the current sensor on the ground with the motor off.
-struct IdleCurrent {
-    double mean_a = 0.0;
-    double sd_a = 0.0;  ///< standard deviation of the samples: the sensor's noise
-    std::size_t samples = 0;
-};
-
-/// A time of more than gap_threshold_s() without a sample, within a sortie or at its edge.
-struct SampleGap {
-    double start_s = 0.0;
-    double duration_s = 0.0;
-    std::size_t end = 0;  ///< the sample after it
-    bool is_within = false;
-};
-
-/// Quality of a power record.
-struct PowerReport {
-    CurrentOrigin origin = CurrentOrigin::unknown;
-    std::optional<IdleCurrent> idle;
-    std::optional<double> energy_closure_percent;  ///< in flight: integral of power over counter, less 100 %
-    std::optional<double> charge_closure_percent;  ///< the same of current and the charge counter
-    std::vector<SampleGap> gaps;                   ///< within the sorties
-    std::vector<std::string> power_faults;         ///< impossible values: the record is not fitted
-    Diagnostics warnings;                          ///< suspect, but possible values
-};
-
-/// Checks a power record by the rules of docs/methods.md. The closure is over the sorties, lift-off to touchdown; the
-/// idle current over the rests with the motor off.
+/// Checks the power record of a flight by the rules of docs/methods.md. The closures are over the sorties, lift-off to
+/// touchdown; the idle current is over the rests with the motor off.
 PowerReport check_power_record(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
-/// The faults as the reason why a flight is excluded, and how to override this.
+/// Returns the faults as the reason why a flight is excluded, with how to override this.
 std::string describe_power_faults(const std::vector<std::string>& power_faults);
 
 /// Subtracts the idle current from current and power (times the voltage of the same time, measured or power over

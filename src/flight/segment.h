@@ -7,7 +7,7 @@
 
 namespace flightwatt::flight {
 
-/// Throws UsageError for thresholds outside of their range.
+/// Checks the options. Throws UsageError for thresholds outside of their range.
 void validate(const SegmentationOptions& options);
 
 /// Finds all sorties and their phases by altitude and throttle. A sortie is between two rests; lift-off is where the

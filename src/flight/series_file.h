@@ -11,17 +11,17 @@
 
 namespace flightwatt::flight {
 
-/// Source of a track of a CSV without front matter.
+/// The source of a track of a CSV without front matter.
 inline constexpr auto plain_source = "series CSV";
 
-/// The value of a table's key current_origin. Throws InputError for another text.
+/// Reads a table's key current_origin. Throws InputError for another text.
 CurrentOrigin read_current_origin(const TomlTable& table);
 
-/// Writes a series file: metadata as TOML in comment lines, the first of them `format = 1`, then a CSV table with
+/// Returns a series file: metadata as TOML in comment lines, the first of them `format = 1`, then a CSV table with
 /// `time_s`, a column for each track (further candidates are NAME.2, NAME.3, ...) and a row for each time of any track.
 /// Lossless, but not for a series whose clock restarts.
 std::string to_csv(const FlightSeries& series);
-/// The same in chunks.
+/// Writes a series file as to_csv(), in chunks.
 void write_csv(const FlightSeries& series, const TextSink& sink);
 
 /// Reads a series file, or a CSV without front matter (time_s and columns of track_names()). Throws InputError for a
@@ -29,10 +29,12 @@ void write_csv(const FlightSeries& series, const TextSink& sink);
 /// samples of power (without power: of altitude), times that do not rise, and several recordings.
 FlightSeries read_series_csv(const std::filesystem::path& path);
 
-/// The same for a text; `file` is named in errors, and names the flight if the text does not.
+/// Reads a series file from text as read_series_csv(). `file` is named in errors, and names the flight if the text does
+/// not.
 FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path& file);
 
-/// The series of each recording: files appended to each other, with their headers or not, or a clock that restarts.
+/// Reads the series of each recording in a text: files appended to each other, with their headers or not, or a clock
+/// that restarts.
 std::vector<FlightSeries> parse_series_recordings(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace flightwatt::flight

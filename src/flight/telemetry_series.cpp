@@ -152,8 +152,8 @@ double speed_of_components(const std::vector<double>& row) { return std::hypot(r
 
 double percent_of_command(const std::vector<double>& row) { return units::percent_from_pprz(row[0]); }
 
-double utm_latitude_deg(const std::vector<double>& row) { return position_of_utm(row).first; }
-double utm_longitude_deg(const std::vector<double>& row) { return position_of_utm(row).second; }
+double utm_latitude_deg(const std::vector<double>& row) { return position_from_utm(row).first; }
+double utm_longitude_deg(const std::vector<double>& row) { return position_from_utm(row).second; }
 
 const LogFamily& paparazzi_family() {
     constexpr auto mean = Merge::mean;
@@ -270,7 +270,7 @@ void set_start_clock(FlightSeries& series) {
     constexpr double last_s = 4'102'444'800.0;  // 2100
     for (const auto& track : series.tracks) {
         for (std::size_t i = 0; track.name == utc_track && i < track.value.size(); ++i) {
-            const double utc_s = after_rollover(track.value[i]);
+            const double utc_s = correct_week_rollover(track.value[i]);
             if (!(utc_s < last_s)) continue;
             series.start_clock_s = utc_s - track.time_s[i];
             if (utc_s != track.value[i])

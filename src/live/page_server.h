@@ -12,23 +12,23 @@ namespace flightwatt::live {
 /// it through a browser. Works in a thread of its own with a bounded number of connections; publish() does not block.
 class PageServer {
   public:
-    /// Points kept for pages opened later; beyond, every second one is removed.
+    /// Maximum number of points kept for pages that are opened later; at more, every second one is removed.
     static constexpr std::size_t max_points = 1800;
     static constexpr std::size_t max_connections = 32;
 
-    /// `at`: "8080" (this machine only) or "ADDRESS:PORT". Throws UsageError for any other text, InputError where it
-    /// cannot listen.
+    /// Serves `page` at "8080" (for this machine only) or "ADDRESS:PORT". Throws UsageError for any other text,
+    /// InputError if it cannot listen there.
     PageServer(std::string_view at, std::string page);
     ~PageServer();
     PageServer(const PageServer&) = delete;
     PageServer& operator=(const PageServer&) = delete;
 
-    /// "http://127.0.0.1:8080/"
+    /// Returns the address of the page: "http://127.0.0.1:8080/".
     std::string address() const;
-    /// Only this machine can connect.
+    /// Returns whether only this machine can connect.
     bool is_local() const;
 
-    /// The current state, and its point in the charts (empty: none): JSON on one line.
+    /// Sends the current state, and its point in the charts (empty: none), to all open pages: each is JSON on one line.
     void publish(std::string state, std::string point);
 
   private:

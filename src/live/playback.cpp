@@ -91,7 +91,7 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
                       link_version(log));
     play_bytes(log.bytes, reader, player);
-    if (!player.is_stopped()) require_fitting(reader.counts(), log);
+    if (!player.is_stopped()) require_matching_lengths(reader.counts(), log);
 }
 
 /// Sends messages as link frames, each in a datagram; without a receiver it is lost, as over the air.

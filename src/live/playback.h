@@ -14,33 +14,35 @@
 
 namespace flightwatt::live {
 
-/// A message as a line of a .data file, with its break. Times have milliseconds, as the ground station writes them, or
-/// as many digits as necessary.
+/// Returns a message as a line of a .data file, with its line break. Its time has milliseconds, as the ground station
+/// writes it, or as many digits as necessary.
 std::string data_line(const IncomingMessage& message);
 
-/// Sends a message of a played log, which has a time. Returns the reason if it cannot be sent, else an empty text.
+/// Sends a message of a played log, which has a time. Returns an empty text, or the reason why it cannot be sent.
 using PlaybackTarget = std::function<std::string_view(const IncomingMessage&)>;
 
-/// A link frame in each datagram to an address: "127.0.0.1:4242". Throws UsageError for another text.
+/// Returns a target that sends link frames, one in each datagram, to an address: "127.0.0.1:4242". Throws UsageError
+/// for another text.
 PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary definitions,
                                telemetry::LinkVersion version = telemetry::LinkVersion::v2);
 
+/// What was played, and how exactly.
 struct PlaybackReport {
-    std::size_t messages = 0;                                  ///< sent
-    std::map<std::string, std::size_t, std::less<>> left_out;  ///< lines, by reason
-    std::size_t shortened_gaps = 0;
-    double log_s = 0.0;        ///< played time of the log, on its clock
-    double played_s = 0.0;     ///< duration
-    double max_delay_s = 0.0;  ///< of a message after its due time
-    bool stopped = false;
+    std::size_t messages = 0;                                  ///< messages sent
+    std::map<std::string, std::size_t, std::less<>> left_out;  ///< lines that were not sent, by reason
+    std::size_t shortened_gaps = 0;                            ///< gaps of more than max_played_gap_s
+    double log_s = 0.0;                                        ///< played time of the log, on its clock
+    double played_s = 0.0;                                     ///< duration of the playback
+    double max_delay_s = 0.0;                                  ///< largest delay of a message
+    bool stopped = false;                                      ///< ended by `stop`
 };
 
-/// Longer gaps of a log are shortened to this: they are mostly steps of its clock.
+/// Length to which longer gaps of a log are shortened: they are mostly steps of its clock.
 inline constexpr double max_played_gap_s = 600.0;
 
 /// Plays a log, text or binary (compressed or not), at `speed` times its own speed until its end or until `stop`
-/// returns true. Where the log's clock goes back, the next message follows at once. `definitions`: of the messages of a
-/// binary log. Throws InputError for a log that cannot be read.
+/// returns true. Where the log's clock goes back, the next message follows at once. `definitions` define the messages
+/// of a binary log. Throws InputError for a log that cannot be read.
 PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
                     const std::function<bool()>& stop,
                     const std::optional<telemetry::MessageDictionary>& definitions = {});

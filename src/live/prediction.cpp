@@ -435,8 +435,8 @@ ReturnDeadline latest_return(const PredictionInput& input, const Prediction& pre
     return deadline;
 }
 
-TimeCurve soc_ahead(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
-                    double now_s) {
+TimeCurve predict_soc_curve(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now,
+                            double now_s) {
     constexpr double min_step_s = 10.0;
     constexpr double max_points = 100.0;
     auto ahead = remaining_power(prediction);

@@ -15,15 +15,15 @@ namespace flightwatt::live {
 /// disk ends the recording, not the watch.
 class Recorder {
   public:
-    /// Creates the folder. `log_text`: content of the .log; none: no .log. Throws OutputError.
+    /// Creates the folder. `log_text` is the content of the .log; without it none is written. Throws OutputError.
     Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text);
 
-    /// Appends complete lines, after `clock_restarted` to a new log.
+    /// Appends complete lines; if the clock restarted before them, to a new log.
     void write(std::string_view lines, bool clock_restarted);
 
-    /// The current .data file; empty before the first line.
+    /// Returns the current .data file; empty before the first line.
     const std::filesystem::path& file() const { return file_; }
-    /// Reason why the recording ended; empty while it continues.
+    /// Returns the reason why the recording ended; empty while it continues.
     const std::string& failure() const { return failure_; }
 
   private:
@@ -38,7 +38,7 @@ class Recorder {
     std::string failure_;
 };
 
-/// "26_11_22__14_05_09": Paparazzi's log name for a Unix time, in UTC.
+/// Returns Paparazzi's log name for a Unix time, in UTC: "26_11_22__14_05_09".
 std::string log_name(std::int64_t unix_s);
 
 }  // namespace flightwatt::live

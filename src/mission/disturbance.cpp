@@ -1,7 +1,7 @@
 #include "mission/disturbance.h"
 
 #include "base/toml_reader.h"
-#include "mission/file/mission_tables.h"
+#include "mission/file/schedule_toml.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "mission/plan.h"
 
 #include <functional>

@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/flight_spreads.h"
+#include "mission/sampling/joint_spread.h"
 #include "mission/simulation/load_segments.h"
 
 #include <algorithm>

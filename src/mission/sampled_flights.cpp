@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/joint_spread.h"
 #include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>

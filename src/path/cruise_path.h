@@ -13,66 +13,71 @@
 
 namespace flightwatt::path {
 
-/// Mechanical power of a phase, constant between times since its start: the energy up to each time, 0 at the first, 0
-/// s.
+/// The mechanical power of a phase, constant between times, as the energy up to each time since its start. The first
+/// time is 0 s, with an energy of 0.
 struct PiecewisePower {
     std::vector<double> time_s{0.0};
     std::vector<double> energy_j{0.0};
 };
 
-/// Where a cruise is flown, in which wind, and what its motion takes.
+/// The path and wind of a cruise, and the model of its power.
 struct PlannedPath {
     FlightPath path;
     Wind wind;
     mechanical::PhysicalModel power;
 };
 
-/// A cruise whose power follows from a path, and not from a curve over time. Copies are cheap.
+/// A cruise whose power follows from a path instead of a curve over time. Copies are cheap.
 struct CruisePath {
     std::shared_ptr<const PlannedPath> plan;
     std::shared_ptr<const PiecewisePower> pieces;  ///< one or more
-    bool is_infeasible = false;                    ///< by a wind that was drawn: the flight fails
+    bool is_infeasible = false;                    ///< a drawn wind forbids the path: the flight fails
 };
 
-/// A cruise as it is flown in `wind`, its power times `factor`. Throws as compute_trajectory.
+/// Computes a cruise as it is flown in `wind`, its power times `factor`. Throws as compute_trajectory().
 CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind,
                           InfeasibleLegPolicy infeasible_legs, double factor = 1.0);
 
+/// Returns the duration of a cruise.
 double duration_s(const CruisePath& cruise);
+/// Returns the mechanical energy of a cruise.
 double energy_j(const CruisePath& cruise);
+/// Returns the mean mechanical power of a cruise.
 double mean_power_w(const CruisePath& cruise);
 
-/// One element of a path as it is flown: means over its time.
+/// One element of a path as it is flown, with means over its time.
 struct PathElementResult {
     std::string name;      ///< "leg 3"
     std::string kind;      ///< "leg", "circles" or "hold"
     double start_s = 0.0;  ///< since the cruise began
     double duration_s = 0.0;
-    std::optional<double> length_m;  ///< over ground
+    std::optional<double> length_m;  ///< length over ground
     std::optional<double> course_deg;
     double airspeed_m_per_s = 0.0;
     double climb_m_per_s = 0.0;
-    double load_factor = 1.0;  ///< the root of the mean square
+    double load_factor = 1.0;  ///< root of its mean square
     double mechanical_w = 0.0;
 };
+/// Returns the result of each element of a path in the plan's wind.
 std::vector<PathElementResult> path_element_results(const PlannedPath& plan);
 
-/// The mean of each term of the power over the cruise, weighted by time: what predicted_power wants. Where the
-/// motor stands (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that
-/// takes no time.
+/// Returns the mean of each term of the power over the cruise, weighted by time, for predicted_power(). While the motor
+/// is off (power_w is 0) the terms count as zeros, so that their power is the mean power. Zeros for a path that takes
+/// no time.
 mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const PathTrajectory& flown);
 
-/// One airspeed for all elements at which a path takes the least energy in its wind, and the energy as planned, by the
-/// same model. Measured times and climb rates are kept.
+/// The common airspeed of all elements at which a path takes the least energy in its wind, and the energy as planned by
+/// the same model. Measured times and climb rates are kept.
 struct PathSpeed {
     mechanical::BestSpeed best;
     double planned_wh = 0.0;
 };
 
-/// std::nullopt as mechanical::speed_model. Throws as compute_trajectory.
+/// Finds the best airspeed of a path; std::nullopt if mechanical::speed_model() has none. Throws as
+/// compute_trajectory().
 std::optional<PathSpeed> best_path_speed(const PlannedPath& plan);
 
-/// Warnings of the first element outside of the model's flown range, and of a bank above 60 degrees.
+/// Returns warnings about the first element outside of the model's flown range, and about a bank above 60 degrees.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 
 }  // namespace flightwatt::path

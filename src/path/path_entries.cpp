@@ -226,7 +226,7 @@ LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& or
     return local;
 }
 
-FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
     PathBuilder builder(defaults, entries);
     for (const auto& entry : entries) builder.add(entry);
     auto path = builder.finish();

@@ -11,47 +11,50 @@
 
 namespace flightwatt::path {
 
-// Ranges of a path's numbers: beyond, the unit is wrong.
+// Limits of the numbers of a path; a number beyond them has the wrong unit.
 inline constexpr double max_m_per_s = 300.0;
 inline constexpr double largest_circle_count = 1e4;
 inline constexpr double min_radius_m = 1.0;
 inline constexpr double max_radius_m = 1e5;
 inline constexpr double max_leg_m = 1e6;
 
-/// On the WGS84 ellipsoid.
+/// A position on the WGS84 ellipsoid.
 struct GeodeticPosition {
     double latitude_deg = 0.0;
     double longitude_deg = 0.0;
 };
 
-/// The place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of it.
+/// Returns the place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of
+/// it.
 LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin);
 
-/// One entry of a path as written: where to fly, and what to do there. Values not given continue.
+/// One entry of a path as written: a place to fly to, and the manoeuvre there. Absent values are those of the entry
+/// before.
 struct PathEntry {
     std::string name;  ///< "leg 3"
     Location where;
     std::optional<LocalPosition> place;
     std::optional<GeodeticPosition> geographic;
-    std::optional<double> length_m;  ///< with course_deg, instead of a place
+    std::optional<double> length_m;  ///< length of a leg with course_deg, instead of a place
     std::optional<double> course_deg;
-    std::optional<double> duration_s;  ///< the way there took so long: no wind triangle
-    std::optional<double> altitude_m;  ///< at the end
+    std::optional<double> duration_s;  ///< measured time of the way there, which replaces the wind triangle
+    std::optional<double> altitude_m;  ///< altitude at the end
     std::optional<double> airspeed_m_per_s;
     ClimbRates rates;
-    std::optional<double> circles;  ///< around the place, or from where the aircraft is
+    std::optional<double> circles;  ///< number of circles around the place, else from the aircraft's position
     std::optional<double> radius_m;
     bool to_right = true;
-    bool is_turn = false;  ///< circles that are a part of a pattern, and not flown more often
+    bool is_turn = false;  ///< the circles are part of a pattern, and are not repeated
     std::optional<double> hold_s;
 };
 
-/// The numbers that waypoints and legs may have in addition to their place.
+/// A number that waypoints and legs may have in addition to their place.
 struct EntryValue {
-    std::string_view name;  ///< as files call it
+    std::string_view name;  ///< key or column in files
     std::optional<double> PathEntry::*value;
     NumberRange range;
 };
+/// All such numbers.
 inline constexpr std::array<EntryValue, 6> entry_values{{
     {"altitude_m", &PathEntry::altitude_m, between(-1e5, 1e5)},
     {"airspeed_m_per_s", &PathEntry::airspeed_m_per_s, more_than_up_to(0.0, max_m_per_s)},
@@ -61,22 +64,21 @@ inline constexpr std::array<EntryValue, 6> entry_values{{
     {"radius_m", &PathEntry::radius_m, between(min_radius_m, max_radius_m)},
 }};
 
-/// Defaults of a path, which an entry may override.
+/// The start of a path, and defaults that an entry may override.
 struct PathDefaults {
     double airspeed_m_per_s = 0.0;
     std::optional<double> altitude_m;  ///< at the start
     ClimbRates rates;
-    std::optional<LocalPosition> start;  ///< none: the origin, or the first entry if that is geographic
+    std::optional<LocalPosition> start;  ///< absent: the origin, or the first entry if that is geographic
     std::optional<GeodeticPosition> geographic_start;
-    bool starts_at_first_place = false;  ///< without a start; at the edge of circles
+    bool starts_at_first_place = false;  ///< the path starts at the first place; for circles at their edge
     bool return_to_start = false;
     Location where;
 };
 
-/// The path that the entries make: to a place a leg; to circles around a place the leg to their edge; then circles,
-/// then the hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's, one that is
-/// 300 km and more from the start, an altitude where the path has none at its start, and an entry that is nothing or
-/// two things.
-FlightPath path_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
+/// Builds the path of the entries: a leg to a place, or to the edge of circles around it; then the circles; then the
+/// hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's or 300 km or more
+/// from the start, for an altitude if the path has none at its start, and for an entry that is no manoeuvre or two.
+FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
 }  // namespace flightwatt::path

@@ -1,5 +1,6 @@
+#include "path/path_tracker.h"
+
 #include "base/units.h"
-#include "path/remaining_path.h"
 
 #include <algorithm>
 #include <array>

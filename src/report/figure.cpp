@@ -25,7 +25,7 @@ double rounded(double number, int decimals) {
 
 VegaJson figure_template(std::string_view name) { return VegaJson::parse(web_templates().at(name)); }
 
-VegaJson filled(VegaJson part, const VegaJson& values) {
+VegaJson fill_template(VegaJson part, const VegaJson& values) {
     if (part.is_string()) {
         const std::string_view text = part.get_ref<const std::string&>();
         if (!text.starts_with("{{") || !text.ends_with("}}")) return part;
@@ -33,7 +33,7 @@ VegaJson filled(VegaJson part, const VegaJson& values) {
         return values.contains(field) ? values[field] : part;
     }
     if (!part.is_structured()) return part;
-    for (auto& inner : part) inner = filled(std::move(inner), values);
+    for (auto& inner : part) inner = fill_template(std::move(inner), values);
     if (!part.is_array()) return part;
     std::erase_if(part.get_ref<VegaJson::array_t&>(), [](const VegaJson& layer) {
         return layer.is_object() && layer.contains("data") && layer["data"].is_null();
@@ -43,11 +43,11 @@ VegaJson filled(VegaJson part, const VegaJson& values) {
 
 Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
                   const VegaJson& values) {
-    auto spec = filled(figure_template(name), values);
+    auto spec = fill_template(figure_template(name), values);
     if (values.contains("panels")) {
         const auto panel = spec["concat"][0];
         spec["concat"].clear();
-        for (const auto& of_panel : values["panels"]) spec["concat"].push_back(filled(panel, of_panel));
+        for (const auto& of_panel : values["panels"]) spec["concat"].push_back(fill_template(panel, of_panel));
     }
     spec["description"] = valid_utf8(description);
     return {std::move(id), std::move(caption), std::move(description), std::move(spec)};

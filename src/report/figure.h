@@ -11,45 +11,48 @@
 
 #include <nlohmann/json.hpp>
 
-/// Data of figures, and Vega-Lite specifications with them.
+/// Figures as Vega-Lite specifications with their data.
 namespace flightwatt::report {
 
 using VegaJson = nlohmann::ordered_json;
 
 /// A Vega-Lite specification with its data and texts; the page draws it, and --figures writes it to a file.
 struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann's moves
-    std::string id;           ///< of letters, digits and '-': a file's name
+    std::string id;           ///< name of its file: letters, digits and '-'
     std::string caption;      ///< below the figure
     std::string description;  ///< its data in words, for screen readers
     VegaJson spec;
 };
 
-/// The files of web/figures and the pages of web, built into the program, by their names without endings.
+/// Returns the files of web/figures and the pages of web, built into the program, by their names without endings.
 const std::map<std::string_view, std::string_view>& web_templates();
 
-/// The specification web/figures/NAME.vl.json; texts "{{FIELD}}" in it are placeholders.
+/// Returns the specification web/figures/NAME.vl.json, in which texts "{{FIELD}}" are placeholders.
 VegaJson figure_template(std::string_view name);
 
-/// `part` of a template with each "{{FIELD}}" replaced by that member of `values`, if there is one. Layers with null
-/// data are removed.
-VegaJson filled(VegaJson part, const VegaJson& values);
+/// Returns `part` of a template with each "{{FIELD}}" replaced by that member of `values`, if there is one, and without
+/// layers whose data are null.
+VegaJson fill_template(VegaJson part, const VegaJson& values);
 
-/// A figure of the template `name`; with "panels" in `values`, its panel of "concat" is repeated with each of them.
+/// Returns a figure of the template `name`, filled with `values`. If these have "panels", the template's panel in
+/// "concat" is repeated with each of them.
 Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
                   const VegaJson& values = {});
 
-/// Data of a figure as Vega-Lite's inline CSV: columns of numbers, with six digits, and then of texts. Infinity and NaN
-/// are empty cells (gaps in a line).
+/// The data of a figure as Vega-Lite's inline CSV: columns of numbers, with six digits, then columns of texts. Infinity
+/// and NaN are empty cells (gaps in a line).
 class FigureData {
   public:
+    /// Begins a table with the names of its columns.
     FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts = {});
-    /// Decimals of the columns of numbers instead of six digits; to be called before any row.
+    /// Sets decimals of the columns of numbers instead of six digits; to be called before any row.
     void round_to(std::vector<int> decimals) { decimals_ = std::move(decimals); }
+    /// Adds a row.
     void add(std::initializer_list<double> numbers, std::initializer_list<std::string_view> texts = {});
     bool empty() const { return rows_ == 0; }
-    /// For a specification's "data".
+    /// Returns the table for a specification's "data".
     VegaJson json() const;
-    /// For a specification's "datasets".
+    /// Returns the table for a specification's "datasets".
     const std::string& csv() const { return csv_; }
 
   private:
@@ -59,12 +62,13 @@ class FigureData {
     std::size_t rows_ = 0;
 };
 
-/// Indices, rising, of the rows that draw the same line on `columns` pixel columns: the first, last, smallest and
-/// largest value of each (M4: Jugel et al., VLDB 2014). All rows where there are no more than four a column.
+/// Returns the indices, rising, of rows that draw the same line on `columns` pixel columns as all: the first, last,
+/// smallest and largest value of each column (M4: Jugel et al., VLDB 2014). All rows if there are at most four a
+/// column.
 std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
                                        std::size_t columns);
 
-/// `count` of the values at equal steps, with the first and the last; all of them where there are no more.
+/// Returns `count` of the values at equal steps, with the first and the last; all if there are no more.
 template <typename Value>
 std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t count) {
     if (values.size() <= count) return values;
@@ -74,12 +78,12 @@ std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t c
     return chosen;
 }
 
-/// "take-off", "cruise", "landing".
+/// Returns the name of a phase for readers: "take-off", "cruise", "landing".
 constexpr std::string_view phase_word(flight::Phase phase) {
     return phase == flight::Phase::takeoff ? std::string_view("take-off") : to_string(phase);
 }
 
-/// JSON without '<', for an HTML script element.
+/// Returns JSON without '<', for an HTML script element.
 std::string script_json(const VegaJson& json);
 
 }  // namespace flightwatt::report

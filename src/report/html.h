@@ -11,25 +11,26 @@
 
 namespace flightwatt::report {
 
-/// `text` as HTML text or attribute value: valid UTF-8, without markup or control characters.
+/// Returns `text` as HTML text or attribute value: valid UTF-8, without markup or control characters.
 std::string html_escaped(std::string_view text);
 
+/// Options of a table.
 struct HtmlTableOptions {
-    bool sortable = false;
-    std::vector<std::string> links = {};  ///< of the rows' first cells; empty: no link
+    bool sortable = false;                ///< a click on a heading sorts the rows
+    std::vector<std::string> links = {};  ///< links of the rows' first cells; empty: no link
 };
 
-/// A table with a caption for screen readers; columns of numbers (or '-') are right-aligned.
+/// Returns a table with a caption for screen readers; columns of numbers (or '-') are right-aligned.
 std::string table_html(const TextTable& table, std::string_view caption, const HtmlTableOptions& options = {});
 
 /// Receives the progress of long work, from any thread.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Where a section stands.
+/// The place of a section on the page.
 enum class SectionPlace {
-    page,    ///< with its title as heading
-    front,   ///< the first screen, with a heading of its own
-    folded,  ///< below "How certain is this?", closed until it is opened
+    page,    ///< in the page, with its title as heading
+    front,   ///< on the first screen, with a heading of its own
+    folded,  ///< below "How certain is this?", which is closed at first
 };
 
 /// A section of the page. Its HTML contains the figures and tables; figures and LaTeX can also be written as files.
@@ -42,18 +43,20 @@ struct Section {
     SectionPlace place = SectionPlace::page;
 };
 
-/// Appends a figure.
+/// Appends a figure to the section and its HTML.
 void add_figure(Section& section, Figure figure);
 
 /// Appends a table to the HTML and, if it has a label and rows, to the LaTeX.
 void add_table(Section& section, const CaptionedTable& table, const HtmlTableOptions& options = {});
 
-/// The text with a capital first letter.
+/// Returns the text with a capital first letter.
 std::string capitalized(std::string text);
 
-/// A subheading, a paragraph and a list of plain text; an empty list is no text.
+/// Returns a subheading of plain text.
 std::string heading(std::string_view text);
+/// Returns a paragraph of plain text.
 std::string paragraph(std::string_view text, std::string_view css_class = "");
+/// Returns a list of plain texts; an empty text for an empty list.
 std::string list_html(const std::vector<std::string>& lines, std::string_view css_class = "");
 
 }  // namespace flightwatt::report

@@ -6,10 +6,11 @@
 
 namespace flightwatt::report {
 
-/// Longitudes and latitudes [deg] of a line.
+/// A line as longitudes and latitudes [deg].
 using Outline = std::vector<std::pair<double, double>>;
 
-/// Every line and ring of a GeoJSON file, drawn below flown tracks. Throws InputError for a file without any.
+/// Reads every line and ring of a GeoJSON file, to be drawn below flown tracks. Throws InputError for a file without
+/// any.
 std::vector<Outline> read_outlines(const std::filesystem::path& file);
 
 }  // namespace flightwatt::report

@@ -5,8 +5,16 @@
 #include "cli/output/physical_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "mission/replay.h"
-#include "report/sections/sections.h"
+#include "report/sections/aircraft_panel.h"
+#include "report/sections/battery_section.h"
+#include "report/sections/flights_section.h"
+#include "report/sections/missions_section.h"
+#include "report/sections/model_section.h"
+#include "report/sections/page_summary.h"
+#include "report/sections/summary_section.h"
+#include "report/sections/tracks_section.h"
 #include "report/trends_section.h"
 
 #include <algorithm>
@@ -112,9 +120,10 @@ void add_trends(Draft& page, const BatchContent& batch) {
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
     std::vector<FlightTrendData> flights(usable.size());
     for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i]); });
-    if (!trends_section(trends_of(flights))) return;  // without dates, packs have no trend either: saves their time
+    if (!trends_section(estimate_trends(flights)))
+        return;  // without dates, packs have no trend either: saves their time
     const auto notes = add_state_of_health(flights, max_battery_flights, page.input.capacity_ah);
-    auto section = trends_section(trends_of(flights));
+    auto section = trends_section(estimate_trends(flights));
     section->html += list_html(notes);
     section->place = SectionPlace::folded;
     page.content.sections.push_back(std::move(*section));

@@ -15,43 +15,46 @@
 #include <utility>
 #include <vector>
 
-/// A folder of flightwatt batch and missions as the sections of a page, and as LaTeX tables.
+/// The report of a folder of flightwatt batch and of missions: the sections of a page, and LaTeX tables.
 namespace flightwatt::report {
 
 /// Receives the report's warnings and progress.
 struct ReportLog {
+    /// Reports a warning.
     std::function<void(const std::string& text)> warn;
-    /// Starts a progress of `unit`, shown until it is destroyed.
+    /// Starts a progress that counts `unit` and is shown until it is destroyed.
     std::function<Progress(const std::string& unit)> progress = [](const std::string&) { return Progress(); };
 };
 
-/// Limit of the flights for the battery, whose work grows with their square.
+/// Maximum number of flights for the battery, whose computation grows with their square.
 inline constexpr std::size_t max_battery_flights = 12;
 
+/// The input of a report.
 struct ReportInput {
     std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};
     std::vector<mission::PackFlights> packs = {};    ///< missions over several packs; their flights are in `missions`
-    std::optional<std::string> published_file = {};  ///< of a model, for Table I
-    std::optional<double> capacity_ah = {};          ///< of the flights' battery
-    bool with_replay = false;                        ///< of the missions on the flights
-    std::vector<Outline> outlines = {};              ///< below the flown tracks
+    std::optional<std::string> published_file = {};  ///< file of a published model, for Table I
+    std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery
+    bool with_replay = false;                        ///< with the missions replayed on the flights
+    std::vector<Outline> outlines = {};              ///< drawn below the flown tracks
 };
 
+/// The content of a report.
 struct ReportContent {
     std::string title;                                       ///< aircraft, flights with their dates, missions
     std::vector<std::pair<std::string, std::string>> facts;  ///< "flights" - "3 logs, from out", ...
     std::vector<Section> sections;                           ///< the summary first
-    Json summary;                                            ///< of --json, with an empty title
+    Json summary;                                            ///< JSON of --json, with an empty title
 };
 
-/// Throws InputError as read_batch_content, and UsageError for a capacity that flights contradict.
+/// Makes a report. Throws InputError as read_batch_content(), and UsageError for a capacity that flights contradict.
 ReportContent make_report(const ReportInput& input, const ReportLog& log);
 
-/// Table I and the constants of the physical model.
+/// Returns Table I and the constants of the physical model as LaTeX.
 std::string model_latex(const mechanical::MechanicalModel& model);
 
-/// JSON Schema of ReportContent::summary.
+/// Returns the JSON Schema of ReportContent::summary.
 Json summary_schema();
 
 }  // namespace flightwatt::report

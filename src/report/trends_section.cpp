@@ -161,7 +161,7 @@ std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& fligh
     return notes;
 }
 
-std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights) {
+std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights) {
     constexpr double seconds_per_day = 86400.0;
     std::vector<AircraftTrend> trends;
     for (const auto& aircraft : aircraft_names(flights)) {

@@ -16,63 +16,64 @@
 
 namespace flightwatt::report {
 
-/// Quantities of a flight that may change with age.
+/// The quantities of a flight that may change with age.
 struct FlightTrendData {
     std::string name;
-    std::string aircraft;  ///< id and name as text
+    std::string aircraft;  ///< id and name of the aircraft as text
     std::string aircraft_id = {};
     std::string aircraft_name = {};
     FlightSummary facts;
     std::vector<battery::DischargeRecord> records;
-    std::string no_record_reason;  ///< if there are no records
+    std::string no_record_reason;  ///< reason why there are no records
     std::optional<battery::FlightResistance> resistance;
-    std::optional<double> capacity_ah;  ///< of the pack, where the flight determines it
+    std::optional<double> capacity_ah;  ///< capacity of the pack, if the flight determines it
     Interval capacity_interval_ah;
-    std::optional<double> capacity_percent;  ///< of the mean of the flights, which may be a guess
-    std::optional<double> charge_ah;         ///< drawn from the pack, also on the ground
+    std::optional<double> capacity_percent;  ///< capacity in percent of the mean of the flights, which may be a guess
+    std::optional<double> charge_ah;         ///< charge drawn from the pack, also on the ground
 };
 
-/// Of an accepted flight.
+/// Collects the quantities of an accepted flight.
 FlightTrendData extract_trend_data(const ReportFlight& flight);
 
 /// Adds resistance and capacity of each flight, by the common open-circuit curve of an aircraft's flights
 /// (battery/identification/circuit_problem.h). `capacity_ah` is their mean capacity; without it, it may be a guess.
-/// Returns reasons for missing values, a line an aircraft. Aircraft with more than `max_flights` are skipped: the work
-/// grows with the square. Throws UsageError where flights draw more than the capacity.
+/// Returns reasons for missing values, a line for each aircraft. Aircraft with more than `max_flights` are skipped, as
+/// the computation grows with their square. Throws UsageError where flights draw more than the capacity.
 std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t max_flights,
                                              std::optional<double> capacity_ah = {});
 
+/// A quantity whose trend is estimated.
 struct TrendQuantity {
-    const char* name;   ///< with its unit, as in files
-    const char* title;  ///< short, as in figures
+    const char* name;   ///< name with its unit, as in files
+    const char* title;  ///< short name, as in figures
     std::optional<double> (*value)(const FlightTrendData&);
 };
 
-/// The quantities whose trends are estimated; not the charge drawn, which depends on the length of the flight.
+/// Returns the quantities whose trends are estimated; not the charge drawn, which depends on the length of the flight.
 std::span<const TrendQuantity> trend_quantities();
 
-/// A quantity of one aircraft over its flights' dates.
+/// A quantity of one aircraft over the dates of its flights, and its trend.
 struct AircraftTrend {
     std::string aircraft;
     std::string quantity;
-    std::vector<batch::DatedValue> values;  ///< days since 1970
+    std::vector<batch::DatedValue> values;  ///< values over days since 1970
     batch::TrendResult answer;
     std::string aircraft_id = {};
     std::string aircraft_name = {};
 };
 
-/// All quantities of each aircraft.
-std::vector<AircraftTrend> trends_of(std::span<const FlightTrendData> flights);
+/// Estimates the trends of all quantities of each aircraft.
+std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights);
 
 Fields<AircraftTrend> record_fields(const AircraftTrend*);
 
-/// Trends are shown as changes in so many days.
+/// Number of days in which trends are shown as changes.
 inline constexpr double shown_days = 30.0;
 
-/// "rises", "falls", "not significant", or "unknown" with the reason.
+/// Returns the direction of a trend: "rises", "falls", "not significant", or "unknown" with the reason.
 std::string trend_direction(const AircraftTrend& trend);
 
-/// Figures of the known trends, and the table of all; std::nullopt without any.
+/// Returns the section with figures of the known trends and a table of all; std::nullopt without any.
 std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends);
 
 }  // namespace flightwatt::report

@@ -141,7 +141,7 @@ class FrameReader {
         for_each_field(*found.message, found.fields, [&](const WireField& field, const char* p, std::size_t elements) {
             fields_.push_back({field.type, p, elements});
         });
-        auto& table = table_of(log_, std::to_string(found.sender), plan, found.offset);
+        auto& table = find_or_add_table(log_, std::to_string(found.sender), plan, found.offset);
         table.places.push_back(found.offset + 1);
         append_row(
             table, plan, time_s, [&](const DecodePlan::Target& target) { return value_of(target); },
@@ -240,7 +240,7 @@ LinkVersion link_version(const BinaryLog& log) {
                      name_others);
 }
 
-void require_fitting(const LinkCounts& counts, const BinaryLog& log) {
+void require_matching_lengths(const LinkCounts& counts, const BinaryLog& log) {
     // Definitions of a similar build mismatch a ninth of a real log's frames, those of another decade 40 to 64 %.
     constexpr std::size_t of_which_one = 4;
     const auto defined = counts.messages + counts.length_mismatches;
@@ -259,7 +259,7 @@ TelemetryLog parse_binary_telemetry(const BinaryLog& log, LogConfiguration confi
 TelemetryLog read_binary_telemetry(const BinaryLog& log, LogConfiguration configuration,
                                    const std::vector<MessageRequest>& wanted) {
     auto parsed = parse_frames(log, std::move(configuration), wanted);
-    require_fitting(parsed.counts, log);
+    require_matching_lengths(parsed.counts, log);
     if (!parsed.has_times) {
         throw InputError({log.file.string()}, "is a capture of a link, whose messages have no times",
                          "flights need an SD card's log, or a capture with TIMESTAMP messages; flightwatt convert "
@@ -268,7 +268,7 @@ TelemetryLog read_binary_telemetry(const BinaryLog& log, LogConfiguration config
     return std::move(parsed.log);
 }
 
-std::vector<std::pair<std::string, std::size_t>> census_of_binary_messages(const BinaryLog& log) {
+std::vector<std::pair<std::string, std::size_t>> count_binary_messages(const BinaryLog& log) {
     std::map<std::string, std::size_t, std::less<>> names;
     const auto version = link_version(log);
     with_framing(log.framing, [&]<Framing framing>() {

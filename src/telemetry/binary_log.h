@@ -14,7 +14,7 @@
 
 namespace flightwatt::telemetry {
 
-/// The framing of a log's messages, detected from its content; std::nullopt for text. A text begins with a line of
+/// Detects the framing of a log's messages from its content; std::nullopt for text. A text begins with a line of
 /// telemetry; a binary log has consecutive frames with valid checksums.
 std::optional<Framing> detect_binary_framing(std::string_view bytes);
 
@@ -27,7 +27,7 @@ struct BinaryLog {
     const MessageDictionary* messages = nullptr;
 };
 
-/// The version of the message headers. Throws InputError if no message matches the definitions.
+/// Detects the version of the message headers. Throws InputError if no message matches the definitions.
 LinkVersion link_version(const BinaryLog& log);
 
 /// Reads the requested messages into columns; `configuration` is that of the definitions' file. A float becomes the
@@ -37,14 +37,14 @@ LinkVersion link_version(const BinaryLog& log);
 TelemetryLog read_binary_telemetry(const BinaryLog& log, LogConfiguration configuration,
                                    const std::vector<MessageRequest>& wanted);
 
-/// The same without these two checks.
+/// Reads the requested messages as read_binary_telemetry(), without its two checks.
 TelemetryLog parse_binary_telemetry(const BinaryLog& log, LogConfiguration configuration,
                                     const std::vector<MessageRequest>& wanted);
 
 /// Throws InputError if a quarter of the counted messages or more have other lengths than defined.
-void require_fitting(const LinkCounts& counts, const BinaryLog& log);
+void require_matching_lengths(const LinkCounts& counts, const BinaryLog& log);
 
-/// Names and counts of the messages, most frequent first: count_messages() for binary logs.
-std::vector<std::pair<std::string, std::size_t>> census_of_binary_messages(const BinaryLog& log);
+/// Returns names and counts of the messages in a binary log, most frequent first.
+std::vector<std::pair<std::string, std::size_t>> count_binary_messages(const BinaryLog& log);
 
 }  // namespace flightwatt::telemetry

@@ -18,14 +18,14 @@ struct LinkMessage {
     std::uint8_t sender = 0;
     std::uint8_t class_id = MessageDictionary::telemetry_class;
     std::string_view name;
-    std::optional<double> time_s;         ///< of card frames and of links with TIMESTAMP messages
+    std::optional<double> time_s;         ///< in card frames, and on links with TIMESTAMP messages
     std::string_view text;                ///< a .data line without its time and line break: "20 ENERGY 57 11.62 1.64"
     std::span<const double> values = {};  ///< of the fields; NaN for text, arrays, non-finite values
 };
 
 /// Counters of a decoder. Each byte belongs to a frame, or is skipped, zero or pending.
 struct LinkCounts {
-    std::size_t bytes = 0;               ///< pushed
+    std::size_t bytes = 0;               ///< received
     std::size_t frames = 0;              ///< with a valid checksum
     std::size_t messages = 0;            ///< decoded from them
     std::size_t unknown = 0;             ///< frames of undefined messages
@@ -36,7 +36,7 @@ struct LinkCounts {
     std::size_t padding_bytes = 0;       ///< zeros between frames or at the end: preallocated space
     std::optional<LinkVersion> version;  ///< std::nullopt: not decided yet
     std::optional<Framing> framing;
-    /// Frames that are unknown or of other lengths, by 256 * class + id.
+    /// Number of unknown frames, and below of frames of other lengths, by 256 * class + id.
     std::map<std::uint16_t, std::size_t> unknown_ids = {};
     std::map<std::uint16_t, std::size_t> other_length_ids = {};
 };
@@ -48,8 +48,8 @@ class LinkDecoder {
   public:
     using Sink = std::function<void(const LinkMessage&)>;
 
-    /// Without framing or version these are detected: the first frames are then delayed until a few have followed each
-    /// other (see flush).
+    /// Decodes by the definitions of `dictionary`. Without framing or version these are detected: the first frames are
+    /// then delayed until a few have followed each other (see flush).
     explicit LinkDecoder(MessageDictionary dictionary, std::optional<Framing> framing = std::nullopt,
                          std::optional<LinkVersion> version = std::nullopt);
     ~LinkDecoder();
@@ -60,6 +60,7 @@ class LinkDecoder {
     void push(std::string_view bytes, const Sink& sink);
     /// Ends the input (a file's end, a reopened link): delivers or discards the pending bytes.
     void flush(const Sink& sink);
+    /// Returns the counters since the start.
     const LinkCounts& counts() const;
 
   private:

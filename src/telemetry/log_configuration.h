@@ -32,21 +32,21 @@ struct LogConfiguration {
 /// Maximum size of a .log; the configuration of an aircraft has about one MB.
 inline constexpr std::size_t max_log_configuration_bytes = 16'000'000;
 
-/// Reads a .log. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in flight plans), so only the
-/// <protocol> element and single tags of the aircraft are read as XML. Throws InputError if there is no <protocol>, it
-/// has no message, or it cannot be read.
+/// Reads a .log, from a file or its `text`. Such files are often not well-formed XML ("&&", bare "<", escaped quotes in
+/// flight plans), so only the <protocol> element and single tags of the aircraft are read as XML. Throws InputError if
+/// there is no <protocol>, it has no message, or it cannot be read.
 LogConfiguration read_log_configuration(const std::filesystem::path& path);
 LogConfiguration parse_log_configuration(const std::string& text, const std::filesystem::path& file);
 
-/// The .log of a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" in the same folder, else an X.LOG
-/// that is XML; never the log itself. A .log that cannot be read (a folder without permission, a link loop) is
+/// Returns the .log of a log ("X.data", "X.data.gz", "X_SD.data", a card's "X.LOG"): "X.log" in the same folder, else
+/// an X.LOG that is XML; never the log itself. A .log that cannot be read (a folder without permission, a link loop) is
 /// returned, so that reading it reports the reason.
 std::optional<std::filesystem::path> find_log_file(const std::filesystem::path& data_file);
 
-/// Whether a file begins like XML: an X.LOG may be an SD card's log or the definitions of X.tlm.
+/// Returns whether a file begins like XML: an X.LOG may be an SD card's log or the definitions of X.tlm.
 bool begins_as_xml(const std::filesystem::path& path);
 
-/// The name without folder and endings: "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz".
+/// Returns the name of a log without folder and endings: "20_07_03__12_17_45" for "logs/20_07_03__12_17_45.data.gz".
 std::string flight_name(const std::filesystem::path& data_file);
 
 }  // namespace flightwatt::telemetry

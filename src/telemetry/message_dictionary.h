@@ -14,15 +14,17 @@ namespace flightwatt::telemetry {
 
 /// How messages are packed into bytes (docs/formats.md, "Binary logs and links").
 enum class Framing {
-    card,  ///< of SD cards, with the time of each message: .LOG, .tlm
-    link,  ///< of serial lines and UDP, without
+    card,  ///< frames of SD cards, with the time of each message: .LOG, .tlm
+    link,  ///< frames of serial lines and UDP, without times
     xbee,  ///< received packets of an XBee's API mode, escaped or not
 };
 
 /// The header of a message: sender and id (v1), or sender, destination, class and component, id (v2).
 enum class LinkVersion { v1 = 1, v2 = 2 };
 
+/// Returns the name of a framing.
 std::string_view to_string(Framing framing);
+/// Returns the name of a header version.
 std::string_view to_string(LinkVersion version);
 
 /// Type of a field, or of an array's elements, on the wire: little endian, unaligned.
@@ -39,10 +41,10 @@ enum class WireCount : std::uint8_t {
 struct WireField {
     WireType type = WireType::uint8;
     WireCount count = WireCount::one;
-    std::uint16_t elements = 1;  ///< of one and fixed
+    std::uint16_t elements = 1;  ///< number of elements of `one` and `fixed`
 };
 
-/// Calls use.template operator()<T>() with the C++ type of an element; a char is text.
+/// Calls use.template operator()<T>() with the C++ type of an element (char for text) and returns its result.
 template <typename Use>
 auto with_wire_type(WireType type, Use&& use) {
     switch (type) {
@@ -72,22 +74,22 @@ auto with_wire_type(WireType type, Use&& use) {
     return use.template operator()<char>();
 }
 
-/// Bytes of one element.
+/// Returns the size of one element in bytes.
 inline std::size_t size_of(WireType type) {
     return with_wire_type(type, []<typename T>() { return sizeof(T); });
 }
 
-/// A message of frames, identified by the numbers of its class and itself.
+/// A message in frames, identified by the number of its class and its own.
 struct WireMessage {
     MessageDefinition definition;
     std::uint8_t class_id = 0;
     std::uint8_t id = 0;
     std::vector<WireField> fields;  ///< one for each of definition.fields
 
-    std::size_t fixed_bytes = 0;  ///< of the fields that are not counted
+    std::size_t fixed_bytes = 0;  ///< size of the fields that are not `counted`
     bool has_counted = false;
 
-    /// Whether the fields fill the payload exactly.
+    /// Returns whether the fields fill the payload exactly.
     bool fits(std::string_view payload) const {
         return has_counted ? fits_counted(payload) : payload.size() == fixed_bytes;
     }
@@ -96,16 +98,16 @@ struct WireMessage {
     bool fits_counted(std::string_view payload) const;
 };
 
-/// The messages of all classes of a <protocol>, by the numbers in frames.
+/// The messages of all classes of a <protocol>, found by the numbers in frames.
 class MessageDictionary {
   public:
     static constexpr std::uint8_t telemetry_class = 1;
     static constexpr std::uint8_t datalink_class = 2;
 
-    /// Ignores a message whose numbers are taken or over 255, or which has a field of an unknown type.
+    /// Adds a message. Ignores one whose numbers are taken or over 255, or which has a field of an unknown type.
     void add(std::string_view class_id, std::string_view class_name, std::string_view message_id,
              const MessageDefinition& definition);
-    /// The message; nullptr if it is not defined.
+    /// Returns the message of two numbers; nullptr if it is not defined.
     const WireMessage* find(std::uint8_t class_id, std::uint8_t message_id) const {
         if (class_id >= max_classes) return nullptr;
         const auto number = numbers_[std::size_t{class_id} * 256 + message_id];
@@ -118,11 +120,13 @@ class MessageDictionary {
     static constexpr std::size_t max_classes = 16;
 
     std::vector<WireMessage> messages_;
-    std::array<std::uint16_t, max_classes * 256> numbers_{};  ///< in messages_, from 1; 0: not defined
+    std::array<std::uint16_t, max_classes * 256>
+        numbers_{};  ///< positions in messages_, counted from 1; 0: not defined
 };
 
-/// The definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError if it has none.
+/// Reads the definitions of a messages.xml, or of the <protocol> of a .log. Throws InputError if it has none.
 MessageDictionary read_message_dictionary(const std::filesystem::path& path);
+/// Reads the definitions from text; `file` is named in errors.
 MessageDictionary parse_message_dictionary(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace flightwatt::telemetry

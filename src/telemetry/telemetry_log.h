@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +27,7 @@ struct Column {
     std::string field;
     std::optional<units::Quantity> quantity;
     std::vector<double> values;
-    bool is_integer = false;  ///< as an autopilot's log stores it; set for these logs only
+    bool is_integer = false;  ///< the log stores whole numbers; set for logs of other autopilots only
 };
 
 /// The rows of one message of one sender, in the order of the file.
@@ -36,10 +35,10 @@ struct MessageTable {
     std::string message;
     std::vector<double> time_s;
     std::vector<Column> columns;
-    std::vector<std::size_t> places = {};  ///< of the rows in a file: line or byte, from 1, rising; empty otherwise
+    std::vector<std::size_t> places = {};  ///< line or byte of each row in the file, from 1, rising; may be empty
 
     bool empty() const { return time_s.empty(); }
-    /// The column of `field`; nullptr if the log's definition has none.
+    /// Returns the column of `field`; nullptr if the log's definition has none.
     const Column* column(std::string_view field) const;
 };
 
@@ -48,82 +47,42 @@ struct SenderLog {
     std::string id;
     std::vector<MessageTable> tables;
 
-    /// The table of `message`; nullptr if the sender sent none.
+    /// Returns the table of `message`; nullptr if the sender sent none.
     const MessageTable* table(std::string_view message) const;
 };
 
+/// The requested messages of a log, in columns.
 struct TelemetryLog {
     std::filesystem::path data_file;
     std::string flight;
     std::optional<LogConfiguration> configuration;  ///< absent without a .log
     std::vector<SenderLog> senders;                 ///< in the order of their first requested line
     std::vector<SkippedLines> skipped;
-    std::vector<AssumedDefinition> assumed_definitions;  ///< without a .log, or without its units
-    std::size_t lines = 0;
+    std::vector<AssumedDefinition> assumed_definitions;  ///< assumptions as the .log or its units are missing
+    std::size_t lines = 0;                               ///< number of lines in the file
 };
 
-/// What the log of another autopilot states in addition to the columns of its messages.
+/// Information in the log of another autopilot in addition to its messages.
 struct LogFacts {
     std::map<std::string, std::string> information;  ///< ULog's, by key: "sys_uuid"
     std::map<std::string, double> parameters;
     std::vector<std::string> texts;  ///< messages to the user, at most a thousand
     std::size_t dropouts = 0;        ///< times at which ULog's logger lost data
-    double dropout_s = 0.0;          ///< in all
+    double dropout_s = 0.0;          ///< their total duration
 };
 
-/// A message, its number in the log, and its fields.
+/// A message of a log: its name, its number in the log, and its fields.
 struct AutopilotMessage {
     std::string name;
     std::size_t count = 0;
     std::vector<std::string> fields;
 };
 
+/// The log of another autopilot.
 struct AutopilotLog {
     TelemetryLog log = {};  ///< of one sender, with an empty id
     LogFacts facts = {};
-    std::vector<AutopilotMessage> messages = {};  ///< all, the most frequent first
+    std::vector<AutopilotMessage> messages = {};  ///< all messages, the most frequent first
 };
-
-/// Reads the requested messages of a Paparazzi .data text. `data_file` is named in errors, `configuration` is that of
-/// the .log. Throws InputError for a text without a telemetry line, and for more than 300 senders.
-TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                            std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
-
-/// The same for a text that may have no telemetry. Throws InputError only for more than 300 senders.
-TelemetryLog parse_telemetry(std::string_view text, const std::filesystem::path& data_file,
-                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted);
-
-/// Decodes single messages as they arrive into the rows that parse_telemetry gives for a whole log.
-class MessageDecoder {
-  public:
-    using Skipped = std::map<std::string, std::size_t, std::less<>>;
-
-    MessageDecoder(const std::optional<LogConfiguration>& configuration, const std::vector<MessageRequest>& wanted);
-    ~MessageDecoder();
-    MessageDecoder(const MessageDecoder&) = delete;
-    MessageDecoder& operator=(const MessageDecoder&) = delete;
-
-    /// Decodes "ENERGY 57 11.62 1.64". If `values` of the fields are given (NaN for text and arrays), only the name and
-    /// arrays are read from the text. The table has one row and is valid until the next call; nullptr for a message
-    /// that is not requested, or not usable (and counted).
-    const MessageTable* decode(double time_s, std::string_view message, std::span<const double> values = {});
-    /// Starts another log: without a .log its messages may have other built-in definitions.
-    void restart();
-
-    /// Number of unusable messages and values, by reason.
-    const Skipped& skipped() const { return skipped_; }
-    const std::vector<AssumedDefinition>& assumed_definitions() const { return assumed_; }
-
-  private:
-    struct Message;
-
-    std::vector<Message> messages_;
-    std::vector<std::string_view> words_;  ///< of the last message; its memory is reused
-    Skipped skipped_;
-    std::vector<AssumedDefinition> assumed_;
-};
-
-/// Names and counts of the messages in a .data text, most frequent first; at most the first thousand names.
-std::vector<std::pair<std::string, std::size_t>> count_messages(std::string_view text);
 
 }  // namespace flightwatt::telemetry

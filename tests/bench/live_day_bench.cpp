@@ -7,6 +7,7 @@
 #include "live/live_flight.h"
 #include "live/prediction.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "path/remaining_path.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "log_passes.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/log_reader.h"
 
 #include <cstdio>
 #include <exception>

@@ -3,6 +3,7 @@
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/log_reader.h"
 
 #include <cstddef>
 #include <string>

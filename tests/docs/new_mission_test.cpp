@@ -8,6 +8,8 @@
 #include "helpers/document.h"
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
+#include "mission/new_mission_toml.h"
 
 #include <algorithm>
 #include <regex>

@@ -4,6 +4,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "exchange/monitor_parameters.h"
+#include "exchange/px4_parameters.h"
 #include "helpers/synthetic_discharge.h"
 #include "helpers/test_paths.h"
 

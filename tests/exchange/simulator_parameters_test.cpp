@@ -1,9 +1,12 @@
 // Batteries of simulators: names as documented, numbers against the simulators' own equations.
 
+#include "exchange/simulator_parameters.h"
+
 #include "base/error.h"
 #include "base/number.h"
 #include "battery/discharge.h"
 #include "exchange/autopilot_parameters.h"
+#include "exchange/px4_parameters.h"
 #include "helpers/synthetic_discharge.h"
 #include "helpers/test_paths.h"
 

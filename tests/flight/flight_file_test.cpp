@@ -11,6 +11,7 @@
 #include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,10 +1,12 @@
 #include "flight/power_check.h"
 
 #include "flight/load_flight.h"
+#include "flight/power_report.h"
 #include "flight/telemetry_series.h"
 #include "helpers/sample_columns.h"
 #include "helpers/test_paths.h"
 #include "synthetic/synthetic_log.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <cmath>

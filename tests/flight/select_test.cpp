@@ -1,6 +1,7 @@
 #include "flight/load_flight.h"
 #include "flight/telemetry_series.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <string>

@@ -2,10 +2,12 @@
 
 #include "base/error.h"
 #include "flight/power_check.h"
+#include "flight/power_report.h"
 #include "flight/telemetry_series.h"
 #include "helpers/cut_logs.h"
 #include "helpers/rejected.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,6 +8,7 @@
 #include "helpers/rejected.h"
 #include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <fstream>

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "fuzz/flown_plan.h"
 #include "fuzz/fuzz_target.h"
+#include "path/plan_blocks.h"
 
 #include <string>
 #include <vector>

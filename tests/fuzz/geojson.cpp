@@ -2,6 +2,8 @@
 
 #include "fuzz/flown_plan.h"
 #include "fuzz/fuzz_target.h"
+#include "path/area.h"
+#include "path/waypoint_files.h"
 
 void flightwatt::fuzz::run(std::string_view bytes) {
     const bool is_area = bytes.starts_with('<') || bytes.find("Polygon") != std::string_view::npos;

@@ -4,6 +4,7 @@
 #include "flight/telemetry_series.h"
 #include "fuzz/fuzz_target.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 #include "telemetry/telemetry_log.h"
 
 void flightwatt::fuzz::run(std::string_view bytes) {

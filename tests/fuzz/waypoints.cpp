@@ -2,6 +2,8 @@
 
 #include "fuzz/flown_plan.h"
 #include "fuzz/fuzz_target.h"
+#include "path/plans/mission_files.h"
+#include "path/waypoint_files.h"
 
 void flightwatt::fuzz::run(std::string_view bytes) {
     using namespace path;

@@ -6,6 +6,7 @@
 #include "flight/telemetry_series.h"
 #include "helpers/test_paths.h"
 #include "telemetry/data_file.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 #include "flight/telemetry_series.h"
 #include "helpers/cut_logs.h"
 #include "helpers/sample_logs.h"
+#include "telemetry/log_reader.h"
 
 #include <functional>
 #include <sstream>

@@ -64,7 +64,7 @@ class UnknownAircraft {
         } else {
             promised = with_highest_quality(problem);
             auto spreads = collect_uncertainty(promised.setup);
-            if (trial.as_if_known) spreads.of_flights.clear();
+            if (trial.as_if_known) spreads.joint.clear();
             least_percent = draw_landings(promised, spreads).quantile_percent(trial.probability);
         }
         std::size_t kept = 0;

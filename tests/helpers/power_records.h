@@ -2,6 +2,7 @@
 
 #include "flight/checks/power_record.h"
 #include "flight/checks/power_rules.h"
+#include "flight/power_report.h"
 
 #include <cmath>
 #include <cstddef>
@@ -62,7 +63,7 @@ struct FoundTexts {
 
 inline FoundTexts found_in(flight::PowerRecord record, const std::vector<std::size_t>& at_rest = resting()) {
     flight::PowerReport report;
-    add_facts(record, at_rest);
+    derive_facts(record, at_rest);
     apply_power_rules(record, report);
     return {report.power_faults, texts_of(report.warnings)};
 }

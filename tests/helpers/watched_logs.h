@@ -36,7 +36,7 @@ inline std::vector<live::IncomingMessage> messages_of(const std::filesystem::pat
     std::vector<live::IncomingMessage> messages;
     std::istringstream text(read_file(log));
     for (std::string line; std::getline(text, line);) {
-        auto message = live::message_of_line(line);
+        auto message = live::parse_message_line(line);
         if (message && message->time_s >= from_s && message->time_s <= until_s) messages.push_back(std::move(*message));
     }
     return messages;

@@ -3,6 +3,7 @@
 #include "helpers/sample_logs.h"
 #include "helpers/watched_logs.h"
 #include "live/live_flight.h"
+#include "live/live_state.h"
 
 #include <cstdint>
 #include <random>

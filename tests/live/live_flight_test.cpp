@@ -5,6 +5,7 @@
 #include "helpers/sample_logs.h"
 #include "helpers/selected_tracks.h"
 #include "helpers/watched_logs.h"
+#include "live/live_state.h"
 
 #include <algorithm>
 #include <cmath>

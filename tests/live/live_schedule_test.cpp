@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "mission/prepared_mission.h"
 
 #include <algorithm>

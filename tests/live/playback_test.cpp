@@ -7,6 +7,7 @@
 #include "helpers/link_lines.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
+#include "live/received_links.h"
 #include "live/sources.h"
 
 #include <algorithm>

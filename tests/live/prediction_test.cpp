@@ -4,6 +4,7 @@
 #include "helpers/made_up_paths.h"
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 
 #include <cmath>
 #include <memory>
@@ -320,11 +321,11 @@ TEST(SocAhead, EndsWithThePrediction) {
     prediction.remaining_s = 1800.0;
     prediction.landing.energy_wh = 0.5;
     prediction.landing_s = 100.0;
-    const auto curve = soc_ahead(basis, prediction, {90.0, 0.0}, 50.0);
+    const auto curve = predict_soc_curve(basis, prediction, {90.0, 0.0}, 50.0);
     EXPECT_NEAR(curve.time_s.back(), 1950.0, 1e-6);
     EXPECT_NEAR(curve.value.back(), 35.0, 1e-6) << "5.5 Wh of 10";
     EXPECT_LT(curve.time_s.size(), 120U);
-    EXPECT_LT(soc_ahead(basis, prediction, {20.0, 0.0}, 50.0).time_s.back(), 50.0 + 721.0) << "2 Wh at 10 W";
+    EXPECT_LT(predict_soc_curve(basis, prediction, {20.0, 0.0}, 50.0).time_s.back(), 50.0 + 721.0) << "2 Wh at 10 W";
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
+#include "live/live_state.h"
 #include "live/prediction.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "telemetry/link_encoder.h"
 
 #include <algorithm>
@@ -58,7 +60,7 @@ LiveState watched(const std::vector<std::string>& lines, std::optional<Predictio
     LiveOptions options;
     options.configuration = telemetry::read_log_configuration(test::sample(1, ".log"));
     LiveFlight flight(std::move(options), std::move(basis), std::move(schedule));
-    for (const auto& line : lines) flight.receive(message_of_line(line).value(), 0.0);
+    for (const auto& line : lines) flight.receive(parse_message_line(line).value(), 0.0);
     flight.end();
     return flight.update();
 }
@@ -151,7 +153,7 @@ TEST(Predictor, TakesFramesOfALink) {
     ASSERT_TRUE(made.predictor) << made.error;
     const auto lines = lines_until(400.0);
     for (const auto& line : lines) {
-        const auto message = message_of_line(line).value();
+        const auto message = parse_message_line(line).value();
         std::string frames;
         if (!encoder.append_frame(message.text, frames).empty()) continue;  // of the ground
         EXPECT_TRUE(made.predictor->push_frames(message.time_s.value(), frames));

@@ -7,6 +7,8 @@
 #include "helpers/pseudo_terminal.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
+#include "live/followed_files.h"
+#include "live/received_links.h"
 
 #include <chrono>
 #include <filesystem>
@@ -194,7 +196,7 @@ TEST(BinaryLogSource, FollowsACardThroughItsRoomAndAnotherThatTakesItsName) {
 TEST(IvySource, IsRefusedForWhatIsNoBus) { EXPECT_THROW(open_ivy_bus("somewhere"), UsageError); }
 
 TEST(Source, ALineIsATimeAndAMessage) {
-    const auto message = message_of_line("335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31");
+    const auto message = parse_message_line("335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31");
     ASSERT_TRUE(message);
     EXPECT_EQ(message->time_s, 335.149);
     EXPECT_EQ(message->text, "20 ENERGY 69 11.7 3.1 36.6 0.03 0.31");
@@ -202,7 +204,7 @@ TEST(Source, ALineIsATimeAndAMessage) {
 
 TEST(Source, WhatHasNoTimeIsNoMessage) {
     for (const auto* line : {"", " ", "335.149", "335.149 ", "nan 20 PONG", "inf 20 PONG", "12abc 20 PONG", "<html>"})
-        EXPECT_FALSE(message_of_line(line)) << line;
+        EXPECT_FALSE(parse_message_line(line)) << line;
 }
 
 }  // namespace

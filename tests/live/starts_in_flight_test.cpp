@@ -5,6 +5,7 @@
 #include "helpers/sample_logs.h"
 #include "helpers/watched_logs.h"
 #include "live/live_flight.h"
+#include "live/live_state.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ constexpr std::size_t lines_of_start = 1500;
 std::vector<IncomingMessage> all_messages(const std::filesystem::path& log) {
     std::vector<IncomingMessage> messages;
     for (const auto& line : test::lines_of(read_file(log)))
-        if (auto message = message_of_line(line.substr(0, line.find_last_not_of("\r\n") + 1)))
+        if (auto message = parse_message_line(line.substr(0, line.find_last_not_of("\r\n") + 1)))
             messages.push_back(std::move(*message));
     return messages;
 }
@@ -115,7 +116,7 @@ TEST(StartsInFlight, WaitAfterThreeLines) {
     LiveFlight flight(std::move(options), test::wing_basis(), nullptr);
     for (const auto* line : {"100.0 20 ENERGY 94 10.9 5.2 56.6 0.86 9.8", "100.2 20 ESTIMATOR 289.5 0.5",
                              "100.7 20 ESTIMATOR 289.8 0.74"}) {
-        flight.receive(message_of_line(line).value(), 0.0);
+        flight.receive(parse_message_line(line).value(), 0.0);
         EXPECT_FALSE(flight.update().no_prediction_reason.empty());
     }
 }

@@ -2,6 +2,7 @@
 
 #include "helpers/paper_missions.h"
 #include "helpers/path_missions.h"
+#include "mission/mission_file.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
 #include "mission/simulation.h"

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "helpers/paper_missions.h"
 #include "mission/mission_file.h"
+#include "mission/planned_mission_toml.h"
 #include "mission/planning/planner.h"
 
 #include <chrono>

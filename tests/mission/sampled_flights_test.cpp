@@ -4,6 +4,7 @@
 #include "helpers/paper_missions.h"
 #include "helpers/rejected.h"
 #include "helpers/steady_mission.h"
+#include "mission/mission_file.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
 

@@ -1,6 +1,7 @@
 #include "mission/simulation.h"
 
 #include "helpers/paper_missions.h"
+#include "mission/mission_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -49,7 +49,7 @@ const Leg& leg(const FlightPath& path, std::size_t index) { return std::get<Leg>
 TEST(PathEntries, BecomeLegsFromPlaceToPlace) {
     auto home = defaults();
     home.return_to_start = true;
-    const auto path = path_of({to(300.0, 0.0), to(300.0, 400.0)}, home);
+    const auto path = build_path({to(300.0, 0.0), to(300.0, 400.0)}, home);
     ASSERT_EQ(path.elements.size(), 3U);
     EXPECT_DOUBLE_EQ(leg(path, 0).course_deg, 90.0);
     EXPECT_NEAR(leg(path, 1).length_m, 400.0, 1e-9);
@@ -60,19 +60,19 @@ TEST(PathEntries, BecomeLegsFromPlaceToPlace) {
 }
 
 TEST(PathEntries, CircleAroundAPlaceFromItsEdge) {
-    const auto path = path_of({circles(to(1000.0, 0.0), 2.0, 100.0), to(0.0, 0.0)}, defaults());
+    const auto path = build_path({circles(to(1000.0, 0.0), 2.0, 100.0), to(0.0, 0.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 3U);
     EXPECT_NEAR(leg(path, 0).length_m, 900.0, 1e-9);
     const auto& circle = std::get<Circles>(path.elements[1].shape);
     EXPECT_NEAR(circle.start_course_deg, 0.0, 1e-9);  // west of the centre, to the right: north
     EXPECT_NEAR(leg(path, 2).length_m, 900.0, 1e-9);  // from the edge where they end
     // Half a circle more ends on the other side.
-    const auto further = path_of({circles(to(1000.0, 0.0), 2.5, 100.0), to(0.0, 0.0)}, defaults());
+    const auto further = build_path({circles(to(1000.0, 0.0), 2.5, 100.0), to(0.0, 0.0)}, defaults());
     EXPECT_NEAR(leg(further, 2).length_m, 1100.0, 1e-9);
     // Without a place the centre is beside the aircraft: a quarter to the left of the way north is to the west of it.
     auto here = circles(entry(), 0.25, 50.0);
     here.to_right = false;
-    const auto turned = path_of({to(0.0, 100.0), here, to(-50.0, 150.0), to(-60.0, 150.0)}, defaults());
+    const auto turned = build_path({to(0.0, 100.0), here, to(-50.0, 150.0), to(-60.0, 150.0)}, defaults());
     ASSERT_EQ(turned.elements.size(), 3U);  // the quarter ends at the next place
     EXPECT_NEAR(leg(turned, 2).length_m, 10.0, 1e-9);
 }
@@ -90,7 +90,7 @@ TEST(PathEntries, ChangeTheirHeightOnTheWay) {
     auto slow = to(0.0, 0.0);
     slow.altitude_m = 110.0;
     slow.rates.descent_m_per_s = 0.5;
-    const auto path = path_of({up, down, slow}, high);
+    const auto path = build_path({up, down, slow}, high);
     ASSERT_EQ(path.elements.size(), 4U);
     EXPECT_DOUBLE_EQ(path.elements[0].altitude_change_m, 60.0);
     EXPECT_EQ(path.elements[0].climb_rate_m_per_s, std::optional(2.0));
@@ -101,14 +101,14 @@ TEST(PathEntries, ChangeTheirHeightOnTheWay) {
     // Where the aircraft is already, a rate says how long it takes.
     auto above = to(0.0, 0.0);
     above.altitude_m = 150.0;
-    const auto on_the_spot = path_of({above}, high);
+    const auto on_the_spot = build_path({above}, high);
     EXPECT_DOUBLE_EQ(std::get<Hold>(on_the_spot.elements.at(0).shape).time_s, 25.0);
     // Without an altitude of the path, a first waypoint that is the start has it.
     auto first = to_latitude(43.0, 1.0);
     first.altitude_m = 250.0;
     auto second = to_latitude(43.01, 1.0);
     second.altitude_m = 270.0;
-    EXPECT_DOUBLE_EQ(path_of({first, second}, defaults()).elements.at(0).altitude_change_m, 20.0);
+    EXPECT_DOUBLE_EQ(build_path({first, second}, defaults()).elements.at(0).altitude_change_m, 20.0);
 }
 
 /// Degrees of WGS84 (NGA.STND.0036, the lengths of a degree at 45 degrees: 111131.745 m and 78846.806 m).
@@ -122,13 +122,15 @@ TEST(PathEntries, MeasureDegreesOnTheEllipsoid) {
     EXPECT_NEAR(east.north_m, 0.0, 1e-3);
     // Across the date line.
     EXPECT_NEAR(to_local({10.0, -179.999}, {10.0, 179.999}).east_m, 219.2, 0.2);
-    const auto path = path_of({to_latitude(45.0, 5.0), to_latitude(45.01, 5.0)}, defaults());
+    const auto path = build_path({to_latitude(45.0, 5.0), to_latitude(45.01, 5.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 1U);
     EXPECT_NEAR(leg(path, 0).length_m, 1111.32, 0.02);
 }
 
 TEST(PathEntries, RefuseWhatHasNoMeaning) {
-    const auto refusal = [](std::vector<PathEntry> entries) { return rejected([&] { path_of(entries, defaults()); }); };
+    const auto refusal = [](std::vector<PathEntry> entries) {
+        return rejected([&] { build_path(entries, defaults()); });
+    };
     auto both = to(1.0, 1.0);
     both.length_m = 5.0;
     both.course_deg = 0.0;

@@ -1,3 +1,5 @@
+#include "path/path_tracker.h"
+
 #include "helpers/made_up_paths.h"
 #include "helpers/selected_tracks.h"
 #include "path/remaining_path.h"

@@ -1,5 +1,8 @@
+#include "path/waypoint_files.h"
+
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
+#include "path/plan_blocks.h"
 #include "path/plan_files.h"
 
 #include <fstream>

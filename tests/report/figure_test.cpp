@@ -44,7 +44,7 @@ TEST(Filled, ReplacesFieldsAndLeavesOutLayersWithoutData) {
                                           "layer": [{"data": "{{rows}}"}, {"data": "{{nothing}}"}, {"mark": "line"}]})");
     const VegaJson values{{"name", "{{rows}}"}, {"rows", {{"values", "a\n1"}}}, {"nothing", nullptr}};
     EXPECT_EQ(
-        filled(part, values).dump(),
+        fill_template(part, values).dump(),
         R"({"title":"{{rows}}","step":1,"more":"{{unknown}}","layer":[{"data":{"values":"a\n1"}},{"mark":"line"}]})");
 }
 

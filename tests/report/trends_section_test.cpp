@@ -62,7 +62,7 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
         const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
                                                   {"resistance_ohm", ageing.ohm_a_day},
                                                   {"capacity_percent", -100.0 * ageing.part_a_day / mean_part}};
-        const auto trends = told(trends_of(flights));
+        const auto trends = told(estimate_trends(flights));
         for (const auto& [quantity, per_day] : truth) {
             ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
             const auto& trend = trends.at(quantity);
@@ -82,7 +82,7 @@ TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
     for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {
         auto flights = flown(test::aged_flights({0.0, 0.0, 9}, seed), 0.0, seed);
         add_state_of_health(flights, 60);
-        for (const auto& [quantity, trend] : told(trends_of(flights))) {
+        for (const auto& [quantity, trend] : told(estimate_trends(flights))) {
             ++judged;
             found += is_significant(trend) ? 1 : 0;
         }
@@ -98,11 +98,11 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
         flights[f].facts.mean_power_w[flight::Phase::cruise] = fresh_w + static_cast<double>(f);
     }
-    EXPECT_FALSE(trends_section(trends_of(flights)));
+    EXPECT_FALSE(trends_section(estimate_trends(flights)));
     flights.push_back(flights.back());
     flights.back().facts.start_clock_s = seconds_per_day * 9.0;
     flights.back().facts.mean_power_w[flight::Phase::cruise] = fresh_w + 9.0;
-    const auto section = trends_section(trends_of(flights));
+    const auto section = trends_section(estimate_trends(flights));
     ASSERT_TRUE(section);
     ASSERT_EQ(section->figures.size(), 1U);
     EXPECT_EQ(section->figures.front().id, "trends-1");
@@ -117,7 +117,7 @@ TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
         flights[f].capacity_percent = 100.0 - 2.0 * (static_cast<double>(f) - 2.0);
     }
-    const auto trends = trends_of(flights);
+    const auto trends = estimate_trends(flights);
     EXPECT_THAT(to_text(table_of(trends)), HasSubstr("-60"));
     EXPECT_THAT(trends_section(trends)->figures.front().description,
                 HasSubstr("pack [% of its mean]: 100, -60 in 30 days (-60 to -60), falls"));

@@ -3,6 +3,7 @@
 #include "flight/segment.h"
 #include "flight/telemetry_series.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <algorithm>
 

@@ -5,6 +5,7 @@
 #include "helpers/binary_frames.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
+#include "telemetry/log_reader.h"
 
 #include <cmath>
 #include <map>
@@ -153,7 +154,7 @@ TEST(BinaryLog, RefusesALinkWithoutTimes) {
 TEST(BinaryLog, CountsMessagesByName) {
     const auto log = card_log(made_data(100), binary_dictionary(), LinkVersion::v1);
     const auto dictionary = binary_dictionary();
-    EXPECT_THAT(census_of_binary_messages({log, Framing::card, "x.LOG", "messages.xml", &dictionary}),
+    EXPECT_THAT(count_binary_messages({log, Framing::card, "x.LOG", "messages.xml", &dictionary}),
                 ElementsAre(Pair("ENERGY", 100), Pair("ESTIMATOR", 100), Pair("PONG", 10)));
 }
 

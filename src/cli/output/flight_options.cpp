@@ -216,7 +216,7 @@ flight::LoadedFlight load_flight(const StageCall& call, const std::string& file,
 flight::Candidates read_recording(const StageCall& call, const std::string& file, const flight::LoadOptions& options) {
     const flight::FlightFile log(file, options);
     auto recordings = read_recordings(log, options.aircraft, options.aircraft_required);
-    const auto used = used_recording(recordings, log, options.recording);
+    const auto used = choose_recording(recordings, log, options.recording);
     if (!options.recording) note_recording(call, file, used, recordings.size());
     return std::move(recordings[used - 1]);
 }

@@ -5,6 +5,8 @@
 #include "base/units.h"
 #include "battery/battery_toml.h"
 #include "cli/output/mission_output.h"
+#include "live/followed_files.h"
+#include "live/received_links.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
@@ -55,7 +57,7 @@ PredictionInput read_model_basis(const StageCall& call, const BasisArguments& ar
 
 /// Throws InputError where the beginning of a text has complete lines, and none of them is a message of Paparazzi.
 void require_messages(const std::filesystem::path& path, const std::string& bytes) {
-    const auto is_message = [](const std::string& line) { return live::message_of_line(line).has_value(); };
+    const auto is_message = [](const std::string& line) { return live::parse_message_line(line).has_value(); };
     std::vector<std::string> lines;
     for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != std::string::npos; begin = end + 1)
         lines.push_back(bytes.substr(begin, end - begin));
@@ -218,7 +220,7 @@ std::unique_ptr<live::MessageSource> open_source(const StageCall& call, const So
     if (ivy) return live::open_ivy_bus(*ivy, factor);
     if (udp) return live::open_udp(*udp, read_definitions(arguments, "--udp " + *udp), factor);
     if (serial) return live::open_serial(*serial, read_definitions(arguments, "--serial " + *serial), factor);
-    return live::standard_input();
+    return live::open_standard_input();
 }
 
 }  // namespace flightwatt::cli

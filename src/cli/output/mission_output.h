@@ -6,6 +6,7 @@
 #include "mission/mission_file.h"
 #include "mission/packs.h"
 #include "mission/plan.h"
+#include "mission/planned_mission_toml.h"
 #include "mission/sampled_flights.h"
 #include "mission/simulation.h"
 

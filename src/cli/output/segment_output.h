@@ -2,7 +2,9 @@
 
 #include "base/diagnostic.h"
 #include "cli/screen_table.h"
-#include "flight/power_check.h"
+#include "flight/flight_data.h"
+#include "flight/flight_phases.h"
+#include "flight/power_report.h"
 
 #include <string>
 #include <vector>

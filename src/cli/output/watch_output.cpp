@@ -12,10 +12,10 @@
 
 namespace flightwatt::live {
 
-Fields<Alarm> record_fields(const Alarm*) {
-    return {field("kind", &Alarm::kind, "`reserve`, `model`, `silence` or `voltage`"),
-            field("grade", &Alarm::grade, "`caution` or `alarm`"), field("text", &Alarm::text, "the finding"),
-            field("action", &Alarm::action, "recommended action, with the time left")};
+Fields<LiveAlarm> record_fields(const LiveAlarm*) {
+    return {field("kind", &LiveAlarm::kind, "`reserve`, `model`, `silence` or `voltage`"),
+            field("grade", &LiveAlarm::grade, "`caution` or `alarm`"), field("text", &LiveAlarm::text, "the finding"),
+            field("action", &LiveAlarm::action, "recommended action, with the time left")};
 }
 
 Fields<ReturnDeadline> record_fields(const ReturnDeadline*) {

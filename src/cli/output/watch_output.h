@@ -4,6 +4,7 @@
 #include "cli/terminal.h"
 #include "compute/compute_model.h"
 #include "live/live_flight.h"
+#include "live/live_state.h"
 
 #include <chrono>
 #include <optional>

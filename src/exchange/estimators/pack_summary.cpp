@@ -50,8 +50,8 @@ double cruise_current_a(const EstimatorInput& input, const PackSummary& pack) {
     return internal_current_a(pack.battery, mean_power_w(input, flight::Phase::cruise), {half_charged_percent, 0.0});
 }
 
-CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int order,
-                           const std::function<double(double)>& curve) {
+CurveFit fit_polynomial(const mechanical::FlownRange& range, int points, int order,
+                        const std::function<double(double)>& curve) {
     Eigen::MatrixXd powers(points, order + 1);
     Eigen::VectorXd values(points);
     for (int i = 0; i < points; ++i) {
@@ -64,11 +64,11 @@ CurveFit fitted_polynomial(const mechanical::FlownRange& range, int points, int 
     return fit;
 }
 
-VoltageLine fitted_line(const battery::Battery& battery, double lowest_percent) {
+VoltageLine fit_voltage_line(const battery::Battery& battery, double lowest_percent) {
     constexpr int charges = 91;
     constexpr double full_percent = units::percent_per_whole;
     const auto curve_v = [&](double soc_percent) { return open_circuit_voltage_v(battery, soc_percent); };
-    const auto fit = fitted_polynomial({lowest_percent, full_percent}, charges, 1, curve_v);
+    const auto fit = fit_polynomial({lowest_percent, full_percent}, charges, 1, curve_v);
     const double empty_v = fit.coefficients[0];
     VoltageLine line{empty_v, empty_v + fit.coefficients[1] * full_percent, lowest_percent};
     // The curve is straight between knots: it deviates most at one of them, or where the fit ends.

@@ -36,7 +36,7 @@ void close(const PowerRecord& record, const std::vector<double>& rate, OnBoardCo
     double difference = 0.0;
     for (const auto& sortie : record.sorties) {
         integral += integrated(record.time_s, rate, sortie.start_s(), sortie.end_s()) / units::seconds_per_hour;
-        difference += counted(record, counter, sortie.start_s(), sortie.end_s());
+        difference += counter_change(record, counter, sortie.start_s(), sortie.end_s());
     }
     if (!(difference > 0.0)) return;
     counter.closure_percent = (integral / difference - 1.0) * units::percent_per_whole;
@@ -84,7 +84,7 @@ std::vector<double> usual_power_w(const PowerRecord& record) {
     std::vector<double> usual_w(record.time_s.size(), std::numeric_limits<double>::quiet_NaN());
     std::map<int, std::vector<std::size_t>> by_throttle;
     for (std::size_t i = 0; i < usual_w.size(); ++i) {
-        if (record.is_flown(i) && record.is_open(i))
+        if (record.is_flown(i) && record.has_open_throttle(i))
             by_throttle[static_cast<int>(record.throttle_percent[i] / step_percent)].push_back(i);
     }
     std::erase_if(by_throttle, [](const auto& step) { return step.second.size() < min_step_samples; });
@@ -126,7 +126,7 @@ void add_sums(PowerRecord& record) {
         record.power_sum_w += record.power_w[i];
         if (record.has_current()) currents_a.push_back(record.current_a[i]);
         if (!record.voltage_v.empty()) voltages_v.push_back(record.voltage_v[i]);
-        if (record.is_open(i)) running_w.push_back(std::abs(record.power_w[i]));
+        if (record.has_open_throttle(i)) running_w.push_back(std::abs(record.power_w[i]));
     }
     if (!currents_a.empty()) {
         record.mean_a = mean(currents_a);
@@ -172,14 +172,14 @@ PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases
     }
     close(record, record.power_w, record.energy_wh);
     close(record, record.current_a, record.charge_ah);
-    add_facts(record, resting_samples(record, phases.rests, data.armed, options));
+    derive_facts(record, resting_samples(record, phases.rests, data.armed, options));
     return record;
 }
 
-void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
+void derive_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
     using State = PowerRecord::State;
     const auto& time_s = record.time_s;
-    record.gaps = gaps_in(time_s, record.sorties);
+    record.gaps = find_flight_gaps(time_s, record.sorties);
     record.at_rest = idle_current(record.current_a, resting);
     record.states.assign(time_s.size(), State::neither);
     if (record.has_throttle())
@@ -207,12 +207,12 @@ void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting) {
     record.is_clipped = is_clipped(record);
 }
 
-double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s) {
+double counter_change(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s) {
     return interpolate_clamped(record.time_s, counter.value, end_s) -
            interpolate_clamped(record.time_s, counter.value, start_s);
 }
 
-std::vector<SampleGap> gaps_in(const std::vector<double>& time_s, const std::vector<Sortie>& sorties) {
+std::vector<SampleGap> find_flight_gaps(const std::vector<double>& time_s, const std::vector<Sortie>& sorties) {
     const double gap_s = gap_threshold_s(time_s);
     std::vector<SampleGap> gaps;
     for (std::size_t i = 1; i < time_s.size(); ++i) {

@@ -4,7 +4,7 @@
 #include "flight/checks/runs.h"
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/power_check.h"
+#include "flight/power_report.h"
 
 #include <algorithm>
 #include <array>
@@ -17,22 +17,24 @@
 
 namespace flightwatt::flight {
 
-/// An on-board counter, and the difference of the measured integral in flight from it.
+/// An on-board counter of energy or charge, and how far the integral of the measurements in flight differs from it.
 struct OnBoardCounter {
     const char* name;
-    std::vector<double> value = {};  ///< at the times of the power samples; empty if not logged
-    double resolution = 0.0;         ///< the decimal place to which its values are rounded
-    std::optional<double> closure_percent = {};
-    double rounding_percent = 0.0;  ///< part of it that rounding explains
+    std::vector<double> value = {};              ///< at the times of the power samples; empty if not logged
+    double resolution = 0.0;                     ///< the decimal place to which its values are rounded
+    std::optional<double> closure_percent = {};  ///< integral over counter in flight, less 100 %
+    double rounding_percent = 0.0;               ///< part of closure_percent that the counter's rounding explains
 };
 
-/// Above this the throttle counts as open [%].
+/// Throttle above which it counts as open [%].
 inline constexpr double open_throttle_percent = 30.0;
-/// A larger difference of an integral from its counter is a fault [%].
+/// Difference of an integral from its counter above which it is a fault [%].
 inline constexpr double max_counter_difference_percent = 10.0;
 
-/// Input of the rules: power and related tracks on the clock of the power samples; empty if not logged.
+/// Input of the rules: power and related tracks on the clock of the power samples (empty if not logged), and values
+/// derived from them.
 struct PowerRecord {
+    /// Whether the aircraft flies or rests at a sample.
     enum class State { flight, rest, neither };
 
     std::vector<double> time_s;
@@ -44,26 +46,28 @@ struct PowerRecord {
     std::vector<double> throttle_percent;
     std::vector<double> altitude_m;
     std::vector<double> altitude_time_s;  ///< the altitude's own clock
-    bool is_sum_of_circuits = false;      ///< with voltages of their own
+    bool is_sum_of_circuits = false;      ///< the power is the sum of circuits with voltages of their own
     std::string power_source;             ///< "ENERGY.power"
     std::vector<Sortie> sorties;
-    std::vector<IndexSpan> in_flight;  ///< the samples of each sortie
+    std::vector<IndexSpan> in_flight;  ///< indices of the samples of each sortie
     double energy_j = 0.0;             ///< in flight
-    double duration_s = 0.0;
+    double duration_s = 0.0;           ///< in flight
 
-    // Derived from the members above by add_facts().
-    std::vector<SampleGap> gaps;                    ///< of the power samples
-    std::optional<IdleCurrent> at_rest;             ///< without a throttle: at rest outside of the sorties
-    std::vector<std::optional<IdleCurrent>> rests;  ///< the same before the first sortie, after it, ... the last
-    std::vector<State> states;                      ///< of each sample; `rest` only with the motor off
+    // Derived from the members above by derive_facts().
+    std::vector<SampleGap> gaps;  ///< of the power samples
+    std::optional<IdleCurrent>
+        at_rest;  ///< current with the motor off; without a throttle at rest outside of the sorties
+    std::vector<std::optional<IdleCurrent>>
+        rests;                           ///< the same before the first sortie, after it, ... and after the last
+    std::vector<State> states;           ///< of each sample; `rest` only with the motor off
     std::vector<double> step_s;          ///< weight of each sample: half of both intervals, at most a gap's length
     std::vector<double> usual_w;         ///< median at the same throttle in flight; NaN if unknown
     std::vector<double> smooth_w;        ///< running median of the power over 11 samples
     std::vector<double> smooth_percent;  ///< running median of the throttle over 11 samples
     std::size_t update_samples = 1;      ///< median number of samples for which the current (or power) is the same
     bool is_clipped = false;             ///< the highest current is reached again and again: the sensor's limit
-    double powerless_w = 0.0;            ///< with an open throttle, up to this the power counts as none
-    double power_sum_w = 0.0;            ///< of the samples in flight, as all below
+    double powerless_w = 0.0;            ///< highest power that counts as zero, with an open throttle
+    double power_sum_w = 0.0;            ///< sum over the samples in flight; the values below are of these too
     double mean_a = 0.0;
     double max_a = 0.0;
     double min_v = std::numeric_limits<double>::quiet_NaN();
@@ -73,7 +77,9 @@ struct PowerRecord {
     bool is_at_rest(std::size_t i) const { return states[i] == State::rest; }
     bool has_current() const { return !current_a.empty(); }
     bool has_throttle() const { return !throttle_percent.empty(); }
-    bool is_open(std::size_t i) const { return has_throttle() && throttle_percent[i] > open_throttle_percent; }
+    bool has_open_throttle(std::size_t i) const {
+        return has_throttle() && throttle_percent[i] > open_throttle_percent;
+    }
     double rest_percent() const {  ///< current at rest, of the mean in flight
         return units::percentage(std::abs(at_rest->mean_a), std::max(std::abs(mean_a), 1e-9));
     }
@@ -81,15 +87,17 @@ struct PowerRecord {
     std::array<const OnBoardCounter*, 2> counters() const { return {&energy_wh, &charge_ah}; }
 };
 
+/// Returns the record of a flight with all derived values.
 PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases, const SegmentationOptions& options);
 
-/// `resting`: indices of the samples at rest with the motor off (without a throttle: at rest outside of the sorties).
-void add_facts(PowerRecord& record, const std::vector<std::size_t>& resting);
+/// Sets the derived values of a record. `resting` are the indices of the samples at rest with the motor off (without a
+/// throttle: at rest outside of the sorties).
+void derive_facts(PowerRecord& record, const std::vector<std::size_t>& resting);
 
-/// Difference of a counter between two times.
-double counted(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s);
+/// Returns the change of a counter between two times, in its unit.
+double counter_change(const PowerRecord& record, const OnBoardCounter& counter, double start_s, double end_s);
 
-/// The gaps within sorties or at their edges.
-std::vector<SampleGap> gaps_in(const std::vector<double>& time_s, const std::vector<Sortie>& sorties);
+/// Returns the gaps of samples within sorties or at their edges.
+std::vector<SampleGap> find_flight_gaps(const std::vector<double>& time_s, const std::vector<Sortie>& sorties);
 
 }  // namespace flightwatt::flight

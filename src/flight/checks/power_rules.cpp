@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "flight/checks/runs.h"
+#include "flight/checks/unusual_rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +103,7 @@ bool is_brief_change(const PowerRecord& r, std::size_t i) {
     if (!r.has_throttle()) return ratio < usual_factor_without_throttle || usual_factor_without_throttle * ratio > 1.0;
     const double percent = r.throttle_percent[i];
     const double smooth_percent = r.smooth_percent[i];
-    if (ratio < usual_factor) return r.is_open(i) && percent >= same_throttle_factor * smooth_percent;
+    if (ratio < usual_factor) return r.has_open_throttle(i) && percent >= same_throttle_factor * smooth_percent;
     return usual_factor * ratio > 1.0 && percent <= smooth_percent / same_throttle_factor + same_throttle_percent;
 }
 
@@ -177,7 +178,7 @@ constexpr PowerRule rules[] = {
      .warn_above = 0.04},
     {.kind = "sensor stuck",
      .text = "power is stuck at {power_w:.2f} W from {from_s:.1f} to {to_s:.1f} s, {percent:.0f} % of the flight",
-     .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.is_open(i); },
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] != 0.0 || r.has_open_throttle(i); },
      .continues = [](const PowerRecord& r, std::size_t i) { return r.power_w[i] == r.power_w[i - 1]; },
      .min_run = stuck_samples,
      .share = Share::time_or_energy,
@@ -202,7 +203,7 @@ constexpr PowerRule rules[] = {
      .text = "{source} is 0 for {lasts_s:.0f} s in flight without a descent, the longest from {from_s:.0f} s on: "
              "{percent:.0f} % of the flight has no power",
      .holds = [](const PowerRecord& r,
-                 std::size_t i) { return r.power_w[i] == 0.0 && (r.is_open(i) || !r.has_throttle()); },
+                 std::size_t i) { return r.power_w[i] == 0.0 && (r.has_open_throttle(i) || !r.has_throttle()); },
      .min_level_s = 5.0,
      .share = Share::time,
      .warn_above = 0.02},
@@ -213,14 +214,14 @@ constexpr PowerRule rules[] = {
      .warn_above = 0.02},
     {.kind = "no power in flight",
      .text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
-     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.is_open(i); },
+     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.has_open_throttle(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
      .warn_above = 0.15},
     {.kind = "power outside of flights",
      .text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: was it a long run-up, or is the altitude wrong?",
      .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
-     .holds = [](const PowerRecord& r, std::size_t i) { return r.is_open(i); },
+     .holds = [](const PowerRecord& r, std::size_t i) { return r.has_open_throttle(i); },
      .min_s = 30.0,
      .share = Share::energy,
      .warn_above = 0.05},

@@ -8,25 +8,27 @@
 
 namespace flightwatt::flight {
 
-/// Samples, or points of a grid, [begin, end).
+/// Indices [begin, end) of samples, or of points of a grid.
 struct IndexSpan {
     std::size_t begin;
     std::size_t end;
     std::size_t size() const { return end - begin; }
 };
 
+/// Returns the values of a span.
 inline std::span<const double> part_of(const std::vector<double>& values, IndexSpan span) {
     return std::span(values).subspan(span.begin, span.size());
 }
 
+/// Sets the values of a span.
 template <typename T>
 void set_part(std::vector<T>& values, IndexSpan span, T value) {
     std::fill(values.begin() + static_cast<std::ptrdiff_t>(span.begin),
               values.begin() + static_cast<std::ptrdiff_t>(span.end), value);
 }
 
-/// The runs of consecutive samples of `within` for which joins(i) is true; a run ends where continues(i), which
-/// compares sample i with the one before it, is false. In order; no run is empty.
+/// Returns the runs of consecutive samples of `within` for which joins(i) is true, in order; none is empty. A run ends
+/// before a sample for which continues(i), which compares it with the one before, is false.
 template <typename Joins, typename Continues>
 std::vector<IndexSpan> runs_of(IndexSpan within, const Joins& joins, const Continues& continues) {
     std::vector<IndexSpan> runs;
@@ -38,12 +40,14 @@ std::vector<IndexSpan> runs_of(IndexSpan within, const Joins& joins, const Conti
     return runs;
 }
 
+/// Returns the runs of consecutive samples of `within` for which joins(i) is true, in order; none is empty.
 template <typename Joins>
 std::vector<IndexSpan> runs_of(IndexSpan within, const Joins& joins) {
     return runs_of(within, joins, [](std::size_t) { return true; });
 }
 
-/// Time within a range for which holds(i) is true of both samples around it [s], without gaps of more than `gap_s`.
+/// Returns the time in a span between samples for both of which holds(i) is true [s], without gaps of more than
+/// `gap_s`.
 template <typename Holds>
 double time_where(const std::vector<double>& time_s, IndexSpan within, double gap_s, const Holds& holds) {
     double together_s = 0.0;
@@ -52,7 +56,7 @@ double time_where(const std::vector<double>& time_s, IndexSpan within, double ga
     return together_s;
 }
 
-/// The runs of at least `min_samples` equal values.
+/// Returns the runs of at least `min_samples` equal values.
 inline std::vector<IndexSpan> runs_of_equal(const std::vector<double>& values, std::size_t min_samples) {
     std::vector<IndexSpan> runs;
     for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
@@ -62,8 +66,8 @@ inline std::vector<IndexSpan> runs_of_equal(const std::vector<double>& values, s
     return runs;
 }
 
-/// Median of an odd number of values around each: removes spikes of less than half that width and keeps ramps. The
-/// first and last half width is unchanged.
+/// Returns the median of the `Width` (odd) values around each: it removes spikes of less than half that width and keeps
+/// ramps. The values of the first and last half width are unchanged.
 template <std::size_t Width>
 std::vector<double> running_median(const std::vector<double>& values) {
     constexpr auto reach = static_cast<std::ptrdiff_t>(Width / 2);

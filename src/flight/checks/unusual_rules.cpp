@@ -1,6 +1,8 @@
+#include "flight/checks/unusual_rules.h"
+
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/checks/power_rules.h"
+#include "flight/power_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +109,7 @@ Findings phase_difference(const PowerRecord& record) {
     for (const auto& sortie : record.sorties) {
         for (const auto& span : sortie.phases) {
             const double measured = measured_wh(record, span.start.time_s, span.end.time_s);
-            const double count_wh = counted(record, record.energy_wh, span.start.time_s, span.end.time_s);
+            const double count_wh = counter_change(record, record.energy_wh, span.start.time_s, span.end.time_s);
             const double difference_wh = std::abs(measured - count_wh);
             if (difference_wh <= max_phase_of_flight * flight_wh) continue;
             const double limit_wh = max_phase_fraction * std::abs(count_wh) + 2.0 * record.energy_wh.resolution;
@@ -139,7 +141,8 @@ Findings altitude_gaps(const PowerRecord& record) {
     if (record.is_counted()) return {};
     const auto& time_s = record.altitude_time_s;
     const auto sum = sum_of(
-        gaps_in(time_s, record.sorties), median_interval_s(time_s), [](const SampleGap& gap) { return gap.is_within; },
+        find_flight_gaps(time_s, record.sorties), median_interval_s(time_s),
+        [](const SampleGap& gap) { return gap.is_within; },
         [&](const SampleGap&) { return record.energy_j / record.duration_s; });
     return {{sum.carried_j / record.energy_j,
              fmt::format("{} gaps in the altitude in flight, {:.0f} s in all: no message came, or the clock jumped; "

@@ -1,5 +1,7 @@
+#include "flight/families/ardupilot_family.h"
+
 #include "base/units.h"
-#include "flight/families/log_family.h"
+#include "flight/families/derived_tracks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +15,6 @@
 /// Where ArduPilot's DataFlash logs have the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
 namespace {
-
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 /// 1 and 0 of events that switch a state on and off.
 template <int on, int off>
@@ -31,7 +31,7 @@ double utc_of_gps(const std::vector<double>& row) {
     constexpr double leap_s = 16.0;  // from July 2012 on
     if (!(row[0] > 0.0)) return no_value;
     const double utc_s = gps_epoch_s + row[0] * week_s + row[1] * units::milli - leap_s;
-    const double date_s = after_rollover(utc_s);
+    const double date_s = correct_week_rollover(utc_s);
     return utc_s - (date_s > july_2015_s ? 1.0 : 0.0) - (date_s > year_2017_s ? 1.0 : 0.0);
 }
 

@@ -23,8 +23,6 @@ using telemetry::MessageTable;
 using telemetry::SenderLog;
 using units::Quantity;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // make_track drops NaN
-
 /// The column with the given quantity, or nullptr.
 const Column* column_of(const MessageTable& table, const char* field, Quantity quantity) {
     const auto* column = table.column(field);
@@ -48,7 +46,7 @@ void add_device(std::vector<Track>& tracks, const std::string& id, const Track& 
                 const std::vector<std::pair<double, double>>& rows) {
     std::vector<MessageTable> reports;
     std::vector<std::vector<double>> values;
-    double last_s = unknown;
+    double last_s = no_value;
     std::size_t report = 0;
     for (const auto& [time_s, value] : rows) {
         report = time_s == last_s ? report + 1 : 0;
@@ -102,11 +100,12 @@ void add_device_message(std::vector<Track>& tracks, const MessageTable* table,
 
 }  // namespace
 
-std::pair<double, double> position_of_utm(const std::vector<double>& east_north_zone) {
+std::pair<double, double> position_from_utm(const std::vector<double>& east_north_zone) {
     const double east_m = east_north_zone[0];
     const double north_m = east_north_zone[1];
     const double zone = east_north_zone[2];
-    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m)) return {unknown, unknown};
+    if (!(zone >= 1.0 && zone <= 60.0) || !std::isfinite(east_m) || !std::isfinite(north_m))
+        return {no_value, no_value};
     constexpr double false_east_m = 500e3;
     constexpr double degree_per_zone = 6.0;
     constexpr double first_meridian_deg = -183.0;

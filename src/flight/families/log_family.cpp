@@ -15,8 +15,6 @@ namespace {
 using telemetry::Column;
 using telemetry::MessageTable;
 
-constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
-
 /// Tracks of which each battery has its own.
 bool is_of_battery(std::string_view track) {
     constexpr std::string_view names[] = {"voltage_v", "current_a", "power_w", "charge_ah", "energy_wh"};
@@ -88,7 +86,7 @@ std::string source_name(const FamilyTrack& of, const std::string& instance) {
 void add_fix(const FamilyTrack& of, const MessageTable& table, const Instances& receivers,
              const std::vector<double>& fix, std::vector<Track>& tracks) {
     std::set<double> fixed;
-    std::vector<double> values(fix.size(), missing_value);
+    std::vector<double> values(fix.size(), no_value);
     for (std::size_t i = 0; i < fix.size(); ++i) {
         const double receiver = receivers.of_row[i];
         if (std::isnan(fix[i]) || std::isnan(receiver)) continue;
@@ -106,12 +104,12 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
                 const std::vector<BoundSource>& sources, std::vector<Track>& tracks) {
     std::vector<double> row(sources.size());
     for (const double number : instances.all) {
-        std::vector<double> values(table.time_s.size(), missing_value);
+        std::vector<double> values(table.time_s.size(), no_value);
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (instances.of_row[i] != number || !instances.counts[i]) continue;
             std::ranges::transform(sources, row.begin(), [&](const BoundSource& source) {
                 const double value = source.column->values[i];
-                return value == source.absent ? missing_value : value * source.factor;
+                return value == source.absent ? no_value : value * source.factor;
             });
             values[i] = of.compute == nullptr ? row.front() : of.compute(row);
         }
@@ -142,11 +140,11 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
     return assumed;
 }
 
-double after_rollover(double utc_s) {
+double correct_week_rollover(double utc_s) {
     constexpr double gps_epoch_s = 315'964'800.0;
     constexpr double first_logs_s = 1'262'304'000.0;  // 2010
     constexpr double overflow_s = 1024.0 * 604'800.0;
-    if (!(utc_s >= gps_epoch_s)) return missing_value;
+    if (!(utc_s >= gps_epoch_s)) return no_value;
     return utc_s + overflow_s * std::max(std::ceil((first_logs_s - utc_s) / overflow_s), 0.0);
 }
 

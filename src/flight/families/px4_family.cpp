@@ -1,5 +1,6 @@
+#include "flight/families/px4_family.h"
+
 #include "base/units.h"
-#include "flight/families/log_family.h"
 
 #include <algorithm>
 #include <array>

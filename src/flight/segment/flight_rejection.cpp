@@ -139,7 +139,7 @@ std::string stays_on_ground(const FlightCandidate& c) {
     const auto& detector = c.grid.detector;
     const double start_s = c.grid.time_s(moving.begin);
     if (!detector.empty() && state_at(detector, start_s) == 1.0 &&
-        !takes(detector, 0.0, start_s, c.grid.time_s(moving.end - 1)))
+        !changes_to(detector, 0.0, start_s, c.grid.time_s(moving.end - 1)))
         return "run-up: the autopilot states that it is on the ground";
     const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
     if (c.max_motor_percent() >= c.options.flight_throttle_percent && high_m - low_m >= min_hover_m) return "";

@@ -9,7 +9,7 @@
 
 namespace flightwatt::flight {
 
-/// An activity that may be a flight, with its data.
+/// An activity that may be a flight, with the data that decide it.
 struct FlightCandidate {
     const FlightData& data;
     const ResampledFlight& grid;
@@ -17,17 +17,20 @@ struct FlightCandidate {
     const Heights& heights;
     const SegmentationOptions& options;
 
+    /// Returns the maximum of motor_percent in the activity.
     double max_motor_percent() const;
-    bool is_motor_off() const;  ///< false if unknown
+    /// Returns whether the motor is off in the activity; false if unknown.
+    bool is_motor_off() const;
 };
 
-/// Why the vehicle does not fly: "a ground vehicle: it sends ROVER_STATUS"; empty otherwise.
+/// Returns the reason why the vehicle does not fly, "a ground vehicle: it sends ROVER_STATUS"; empty if it may.
 std::string ground_vehicle_reason(const FlightData& data);
 
-/// Why an activity is not a flight, by the rules of flight_rejection.cpp (docs/methods.md); empty if it is one.
+/// Returns the reason why an activity is not a flight, by the rules of flight_rejection.cpp (docs/methods.md); empty if
+/// it is one.
 std::string no_flight_reason(const FlightCandidate& candidate);
 
-/// Warning about a flight with the motor off by its indicator; empty without this contradiction.
+/// Returns a warning about a flight during which the motor is off by its indicator; empty without this contradiction.
 std::string motor_contradiction(const FlightCandidate& candidate);
 
 }  // namespace flightwatt::flight

@@ -88,7 +88,7 @@ bool has_pause(const ResampledFlight& grid, IndexSpan within, double pause_s) {
 
 }  // namespace
 
-bool takes(const Track& state, double value, double from_s, double to_s) {
+bool changes_to(const Track& state, double value, double from_s, double to_s) {
     for (auto i = static_cast<std::size_t>(std::ranges::upper_bound(state.time_s, from_s) - state.time_s.begin());
          i < state.time_s.size() && state.time_s[i] <= to_s; ++i)
         if (state.value[i] == value) return true;
@@ -108,7 +108,7 @@ std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight
     const auto lands = [&](IndexSpan between) {
         const double from_s = grid.time_s(between.begin);
         const double to_s = grid.time_s(between.end);
-        if (takes(landed, 1.0, from_s, to_s) || takes(armed, 0.0, from_s, to_s)) return true;
+        if (changes_to(landed, 1.0, from_s, to_s) || changes_to(armed, 0.0, from_s, to_s)) return true;
         const bool is_stated = !armed.empty() || !landed.empty();
         return std::ranges::any_of(runs_of(between, idles), [&](const IndexSpan& run) {
             return run.size() > steps(level_s) && (!is_stated || has_pause(grid, run, pause_s));

@@ -7,21 +7,22 @@
 
 namespace flightwatt::flight {
 
-/// Evidence for the running motor.
+/// The track that shows whether the motor runs.
 enum class MotorIndicator { throttle, power, motor_speed, unknown };
 
-/// Idle is the power on the ground, running the 98th percentile of the log. Power indicates the motor if running
-/// exceeds idle by this ratio and this difference.
+/// Power shows whether the motor runs if the running power (98th percentile of the log) exceeds the idle power (on the
+/// ground) by this ratio and this difference.
 inline constexpr double min_running_to_idle_ratio = 3.0;
 inline constexpr double min_running_above_idle_w = 2.0;
-/// Limits from idle (0) to running power (100): maximum of an idling motor, minimum of the maximum in a flight [%].
+/// Limits of the power, from idle (0) to running (100) [%]: maximum of an idling motor, minimum of the maximum in a
+/// flight.
 inline constexpr double idle_power_percent = 10.0;
 inline constexpr double flight_power_percent = 25.0;
 
-/// Minimum of the usual current of a rotorcraft that hovers; electronics and idling motors draw less.
+/// Minimum of the usual current of a hovering rotorcraft; electronics and idling motors draw less.
 inline constexpr double min_lifting_a = 5.0;
 
-/// Minimum of the full speed of a motor that can fly an aircraft.
+/// Minimum of the full speed of a motor that can propel an aircraft.
 inline constexpr double min_running_rpm = 500.0;
 
 /// Motor effort: the throttle; without one the power from idle (0) to running (100), else the motor's speed in percent
@@ -33,7 +34,8 @@ struct MotorRecord {
     std::vector<std::string> warnings;  ///< removed and substituted data
 };
 
-/// Usual effort of motors that carry a rotorcraft, in any unit: the median above half of the 90th percentile.
+/// Returns the usual effort, in the unit of the values, of motors that carry a rotorcraft: the median above half of the
+/// 90th percentile.
 double usual_effort(std::vector<double> values);
 
 /// Derives the motor effort from throttle, power and motor speed; `altitude_m` (cleaned) identifies power on the

@@ -7,7 +7,7 @@
 
 namespace flightwatt::flight {
 
-bool is_of_message(const Track& track) { return std::isfinite(track.since_s); }
+bool comes_from_message(const Track& track) { return std::isfinite(track.since_s); }
 
 ChosenTrack cleaned(const FlightSeries& series, const Track& candidate) {
     const bool is_current = candidate.name == "current_a";

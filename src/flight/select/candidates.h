@@ -6,14 +6,15 @@
 
 namespace flightwatt::flight {
 
-/// Whether a message of the log has the track, whose unit is then known; a column of a user's CSV may have any.
-bool is_of_message(const Track& track);
+/// Returns whether the track comes from a message of the log, so that its unit is known; a column of a user's CSV may
+/// have any.
+bool comes_from_message(const Track& track);
 
-/// The candidate without outliers.
+/// Returns the candidate without outliers.
 ChosenTrack cleaned(const FlightSeries& series, const Track& candidate);
 
-/// The first candidate of that name that varies, else the first with values; without outliers. `accept`: nullptr, or
-/// which candidates count.
+/// Returns the first candidate of a name that varies, else the first with values, without outliers. Only candidates for
+/// which accept(track) is true are considered.
 template <typename Accept>
 ChosenTrack first_that_varies(const FlightSeries& series, std::string_view name, const Accept& accept) {
     ChosenTrack constant;
@@ -32,6 +33,7 @@ ChosenTrack first_that_varies(const FlightSeries& series, std::string_view name,
     return constant;
 }
 
+/// Returns the first candidate of a name that varies, else the first with values, without outliers.
 inline ChosenTrack first_that_varies(const FlightSeries& series, std::string_view name) {
     return first_that_varies(series, name, [](const Track&) { return true; });
 }

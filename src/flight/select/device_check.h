@@ -8,12 +8,13 @@
 
 namespace flightwatt::flight {
 
-/// Findings about the devices of `message` (docs/methods.md): a device that is stuck or reports almost nothing while
-/// the others run, one that is negative or reports the sum of the others, and ids that are missing between others.
+/// Returns findings about the devices of `message` (docs/methods.md): a device that is stuck or reports almost nothing
+/// while the others run, one that is negative or reports the sum of the others, and ids that are missing in the
+/// sequence.
 std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::string_view message);
 
-/// Why voltage and current of POWER_DEVICE are not the pack's: "the circuits have 5.0 to 12.3 V ...". Empty if their
-/// voltages (energy over charge) agree within 10 %.
+/// Returns the reason why voltage and current of POWER_DEVICE are not the pack's, "the circuits have 5.0 to 12.3 V
+/// ..."; empty if the circuits' voltages (energy over charge) agree within 10 %.
 std::string differing_voltages_reason(const FlightSeries& series);
 
 }  // namespace flightwatt::flight

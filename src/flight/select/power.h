@@ -7,22 +7,23 @@
 
 namespace flightwatt::flight {
 
-/// The messages of consumers, each of which reports its power.
+/// Messages of consumers, each of which reports its own power.
 inline constexpr const char* device_messages[] = {"ESC", "POWER_DEVICE"};
 
-/// Whether a user's CSV has a column of power.
+/// Returns whether the series is a user's CSV with a column of power.
 bool has_plain_power(const FlightSeries& series);
 
-/// The power of a log that does not number its batteries: the column of a user's CSV, else ENERGY.power, else voltage
-/// times current (of ENERGY, then BAT), else the sum of the ESCs or power devices. Rejected are a source that is 0
-/// throughout, and one that voltage times current contradicts (another layout). Outliers are removed.
+/// Selects the power of a log that does not number its batteries: the column of a user's CSV, else ENERGY.power, else
+/// voltage times current (of ENERGY, then BAT), else the sum of the ESCs or power devices. Rejected are a source that
+/// is 0 throughout, and one that voltage times current contradicts (another layout). Outliers are removed.
 ChosenTrack select_power(const FlightSeries& series);
 
-/// The times, rising, at which the message of `source` ("ENERGY.current"; a user's CSV has no message) has a power that
-/// is not its voltage times its current.
+/// Returns the times, rising, at which the message of `source` ("ENERGY.current"; a user's CSV has no message) has a
+/// power that is not its voltage times its current.
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source);
 
-/// The throttle for detecting dropouts of power or current; empty without one, and if the track is never 0.
+/// Returns the throttle for detecting dropouts of the candidate, a power or current; empty without one, and if the
+/// candidate is never 0.
 Track dropout_throttle(const FlightSeries& series, const Track& candidate);
 
 }  // namespace flightwatt::flight

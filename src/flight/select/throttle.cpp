@@ -23,7 +23,7 @@ bool is_fraction(const Track& throttle, const Track& power) {
     constexpr double idle = 0.05;
     constexpr double runs = 0.2;
     constexpr double full = 1.5;
-    if (throttle.empty() || is_of_message(throttle)) return false;
+    if (throttle.empty() || comes_from_message(throttle)) return false;
     const auto [low, high] = std::ranges::minmax(throttle.value);
     if (high < runs || high > full || low < -idle) return false;
     std::vector<double> idle_w;

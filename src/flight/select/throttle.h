@@ -6,28 +6,28 @@
 
 namespace flightwatt::flight {
 
-/// The throttle in percent: the first candidate that varies; commands to the motor where they come often or no power is
-/// measured, thrust only without both. A throttle of unknown unit may be a fraction, as the power shows. Where it idles
-/// while the motor is commanded (manual mode), the commands are used.
+/// Selects the throttle in percent: the first candidate that varies; commands to the motor if they are frequent or no
+/// power is measured, thrust only without both. A throttle of unknown unit may be a fraction, as the power shows. While
+/// it idles although the motor is commanded (manual mode), the commands are used.
 ChosenTrack select_throttle(const FlightSeries& series, const Track& power_w);
 
-/// Effort of the motor by other data than the throttle, on its own clock.
+/// The effort of the motor by other data than the throttle, on its own clock.
 struct MotorEvidence {
     const Track& percent;
-    double running_percent;  ///< above it the motor runs,
-    double mean_percent;     ///< and with at least this mean it is flown
-    const Track& speed;      ///< over ground: only where the aircraft moves; empty: anywhere
+    double running_percent;  ///< the motor runs above this,
+    double mean_percent;     ///< and flies the aircraft with at least this mean
+    const Track& speed;      ///< ground speed: the throttle is replaced only while the aircraft moves; empty: always
 };
 
-/// Where evidence replaced a throttle.
+/// The intervals in which evidence replaced a throttle.
 struct ReplacedThrottle {
     double first_s;
-    double together_s;    ///< in which the motor ran
-    double mean_percent;  ///< of the evidence then
+    double together_s;    ///< time in which the motor ran
+    double mean_percent;  ///< mean of the evidence in that time
 };
 
 /// Replaces an idle throttle by the evidence, in runs in which the motor runs for half a minute in all (in manual mode
-/// some autopilots report no throttle).
+/// some autopilots report no throttle). Returns std::nullopt if nothing was replaced.
 std::optional<ReplacedThrottle> replace_idle_throttle(Track& throttle, double idle_percent,
                                                       const MotorEvidence& evidence);
 

@@ -168,7 +168,7 @@ class IvyAgent::Peer : public std::enable_shared_from_this<Peer> {
                 ready_ = true;
                 return agent_.retire_duplicate(*this);
             case IvyType::message:
-                return agent_.setup_.on_message(groups_of(line.arguments));
+                return agent_.setup_.on_message(split_groups(line.arguments));
             case IvyType::ping:
                 return write(to_ivy_line(IvyType::pong, line.id));
             case IvyType::bye:

@@ -17,6 +17,7 @@
 
 namespace flightwatt::live {
 
+/// Bus, name, subscriptions and handlers of an agent.
 struct IvyAgentSetup {
     boost::asio::ip::udp::endpoint bus;
     std::string name;
@@ -24,12 +25,15 @@ struct IvyAgentSetup {
 
     /// Called with the groups of a message from another agent.
     std::function<void(const std::vector<std::string_view>&)> on_message = [](const auto&) {};
+    /// Called for each unusable line.
     std::function<void(std::string_view reason)> on_unusable = [](std::string_view) {};
+    /// Called when another agent has left.
     std::function<void()> on_peer_lost = [] {};
 };
 
 /// An agent that listens on an Ivy bus: announces itself, connects once with each other agent, sends its subscriptions
-/// and answers pings. Malformed lines and requests to end are counted and ignored. Runs in the thread that runs the context.
+/// and answers pings. Malformed lines and requests to end are counted and ignored. Runs in the
+/// thread that runs the context.
 class IvyAgent {
   public:
     /// Opens its sockets and starts. Throws InputError, as where another program uses the port exclusively.

@@ -94,7 +94,7 @@ std::string to_ivy_line(IvyType type, int id, std::string_view arguments) {
     return line + '\n';
 }
 
-std::vector<std::string_view> groups_of(std::string_view arguments) {
+std::vector<std::string_view> split_groups(std::string_view arguments) {
     std::vector<std::string_view> groups;
     while (!arguments.empty()) groups.push_back(take_until(arguments, group_end));
     return groups;

@@ -1,25 +1,10 @@
 #include "live/sources/message_readers.h"
 
-#include "base/number.h"
-
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
 namespace flightwatt::live {
-
-void SourceReport::count(std::string_view reason, std::size_t times) {
-    if (times > 0) unusable[std::string(reason)] += times;
-}
-
-std::optional<IncomingMessage> message_of_line(std::string_view line) {
-    const auto blank = line.find(' ');
-    if (blank == std::string_view::npos || blank + 1 >= line.size()) return std::nullopt;
-    const auto time_s = parse_number(line.substr(0, blank));
-    if (!time_s || !std::isfinite(*time_s)) return std::nullopt;
-    return IncomingMessage{time_s, std::string(line.substr(blank + 1))};
-}
 
 void MessageQueue::push(IncomingMessage message) {
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - opened_;
@@ -89,7 +74,7 @@ void TextReader::push(std::string_view bytes) {
 
 void TextReader::read(const std::string& line) {
     if (line.empty()) return;
-    if (auto message = message_of_line(line)) return sink_.push(std::move(*message));
+    if (auto message = parse_message_line(line)) return sink_.push(std::move(*message));
     sink_.count("lines that are not messages (TIME SENDER NAME ...)", 1);
 }
 

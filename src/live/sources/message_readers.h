@@ -26,21 +26,22 @@ class MessageSink {
     ~MessageSink() = default;
 };
 
-/// Messages received by any thread and not taken yet. Beyond `max_waiting` the oldest are dropped and counted.
+/// Queue of the messages that any thread received and that were not taken yet. Beyond `max_waiting` the oldest are
+/// dropped and counted.
 class MessageQueue final : public MessageSink {
   public:
     static constexpr std::size_t max_waiting = 100'000;  ///< an hour or more of a busy link
     static constexpr std::size_t max_per_call = 4'000;
 
-    /// Messages without a time get their arrival time since now, times `clock_factor`.
+    /// Opens the queue. A message without a time gets its arrival time since now, times `clock_factor`.
     explicit MessageQueue(double clock_factor) : clock_factor_(clock_factor) {}
 
     void push(IncomingMessage message) override;
     void count(std::string_view reason, std::size_t times) override;
-    /// The link was reopened, or another file begins.
+    /// Counts a restart: the link was reopened, or another file begins.
     void count_restart();
 
-    /// Appends messages, waiting up to `timeout` for the first; `report` is set to the counts so far.
+    /// Appends the waiting messages, after waiting up to `timeout` for the first; sets `report` to the counts so far.
     void take(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages, SourceReport& report);
 
   private:
@@ -50,7 +51,7 @@ class MessageQueue final : public MessageSink {
     std::condition_variable changed_;
     std::deque<IncomingMessage> waiting_;
     SourceReport report_;
-    bool restarted_ = false;  ///< before the next message
+    bool restarted_ = false;  ///< a restart precedes the next message
 };
 
 /// Splits a byte stream into lines. Longer lines than any message are dropped, so memory is bounded.
@@ -60,7 +61,7 @@ class LineBuffer {
 
     /// Appends the complete lines without their breaks (\n or \r\n). Returns the number of lines dropped.
     std::size_t push(std::string_view bytes, std::vector<std::string>& lines);
-    /// The last line, which has no break yet; may be empty.
+    /// Removes and returns the last line, which has no break yet; may be empty.
     std::string take_partial_line();
 
   private:
@@ -89,14 +90,14 @@ class LinkReader {
   public:
     using Definitions = std::shared_ptr<const telemetry::MessageDictionary>;
 
-    /// Framing and version: as of LinkDecoder.
+    /// Decodes by the definitions; framing and version as for LinkDecoder.
     LinkReader(MessageSink& sink, Definitions definitions, std::optional<telemetry::Framing> framing = std::nullopt,
                std::optional<telemetry::LinkVersion> version = std::nullopt);
 
     void push(std::string_view bytes);
-    /// The stream ends here.
+    /// Ends the stream.
     void flush();
-    /// The stream ends here and another one begins (file replaced, link reopened).
+    /// Ends the stream and begins another one (file replaced, link reopened).
     void restart();
 
     const telemetry::LinkCounts& counts() const { return decoder_.counts(); }

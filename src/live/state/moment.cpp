@@ -49,8 +49,8 @@ bool reaches(double value, double threshold, bool was_reached) {
 }
 
 /// Empty: no alarm of that kind.
-std::string_view grade_of(const std::vector<Alarm>& alarms, std::string_view kind) {
-    const auto found = std::ranges::find(alarms, kind, &Alarm::kind);
+std::string_view grade_of(const std::vector<LiveAlarm>& alarms, std::string_view kind) {
+    const auto found = std::ranges::find(alarms, kind, &LiveAlarm::kind);
     return found == alarms.end() ? std::string_view() : found->grade;
 }
 
@@ -88,7 +88,7 @@ std::string reserve_text(const BatteryPrediction& battery, double probability) {
                        battery.limits.reserve_soc_percent, text);
 }
 
-void add_reserve_alarm(const LiveState& state, std::string_view before, std::vector<Alarm>& alarms) {
+void add_reserve_alarm(const LiveState& state, std::string_view before, std::vector<LiveAlarm>& alarms) {
     const double probability = probability_of(state);
     const bool is_alarm = reaches(probability, alarm_probability, before == alarm);
     if (!is_alarm && !reaches(probability, caution_probability, !before.empty())) return;
@@ -220,9 +220,9 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
     result.state = battery::BatteryState{left_percent, 0.0};
 }
 
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input,
-                             const std::vector<Alarm>& before) {
-    std::vector<Alarm> alarms;
+std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<PredictionInput>& input,
+                                   const std::vector<LiveAlarm>& before) {
+    std::vector<LiveAlarm> alarms;
     if (state.time_since_message_s >= state.silence_threshold_s) {
         alarms.push_back({"silence", state.phase ? alarm : caution,
                           fmt::format("nothing was received for {:.0f} s", state.time_since_message_s),
@@ -243,7 +243,7 @@ std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<Predict
             alarms.push_back(
                 {"model", caution, std::move(text), "Check load, propeller and wind: the model may not fit"});
     }
-    std::ranges::stable_sort(alarms, std::less<>(), [](const Alarm& of) { return of.grade != alarm; });
+    std::ranges::stable_sort(alarms, std::less<>(), [](const LiveAlarm& of) { return of.grade != alarm; });
     return alarms;
 }
 

@@ -1,60 +1,50 @@
 #pragma once
 
-#include "battery/discharge_record.h"
+#include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "live/live_flight.h"
+#include "live/live_state.h"
+#include "live/prediction.h"
+#include "path/path_tracker.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-/// Functions of LiveFlight at one moment: phase, battery, start in the air.
+/// Parts of the state of LiveFlight at one moment: phase, battery, alarms, start in the air.
 namespace flightwatt::live {
 
-/// Sets phase and times from the last sortie. A climb that has not held its height yet is a take-off. Landed: the
-/// height has been constant since the touchdown for a rest (no touch-and-go), or the telemetry is over (`is_over`).
+/// Sets phase and times from the last sortie. A climb that has not held its height yet is a take-off. The aircraft has
+/// landed if its height has been constant since the touchdown for the time of a rest (no touch-and-go), or the
+/// telemetry has ended (`is_over`).
 void update_flight_times(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
                          LiveState& state);
 
-/// Time before which rows are not needed: in the air five minutes before the lift-off, on the ground ten minutes ago
-/// (earlier for a sortie that reaches into them).
+/// Returns the time before which rows are not needed: in the air five minutes before the lift-off, on the ground ten
+/// minutes ago (earlier for a sortie that extends into them).
 double retention_start_s(const flight::FlightPhases& phases, const LiveState& state);
 
-/// An error's text without "FLIGHT: " before it.
+/// Returns an error's text without "FLIGHT: " before it.
 std::string without_flight_name(const std::string& text, const std::string& flight);
 
-/// The state of charge by the charge drawn and by voltage, of a series that ends now. `carried_percent`: known state of
-/// charge at its start. Without a usable record (at rest, or started in flight) only by voltage.
-LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
-                         const flight::FlightData& data, std::optional<battery::DischargeRecord>& record);
-
-std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
-                             double initial_soc_percent, double time_s);
-
-/// Probability of landing below the reserve or not at all, from the predictive distributions of the energy (Student's
-/// t) and the capacity (normal, where it has an interval) by a first-order reliability method (docs/live.md). `now` has
-/// a state.
-std::optional<double> probability_below_reserve(const PredictionInput& input, const Prediction& prediction,
-                                                const LiveBattery& now);
-
-/// Progress of a flight whose telemetry begins in the air, since its first message. Throws NoResultError before 30 s of
-/// cruise were received.
+/// Returns the progress, since its first message, of a flight whose telemetry begins in the air. Throws NoResultError
+/// before 30 s of cruise were received.
 mechanical::FlightProgress airborne_progress(const flight::FlightData& data, const flight::Sortie& sortie);
 
 /// Predicts a flight whose telemetry begins in the air. Unless the start of the cruise was received or the remaining
-/// time is given, that is uniform between 0 and the mission's cruise less the part received. Throws as predict_energy.
+/// time is given, the remaining time is uniformly distributed between 0 and the mission's cruise less the part
+/// received. Throws as predict_energy.
 Prediction predict_airborne_start(const PredictionInput& input, const mechanical::FlightProgress& flown,
                                   bool has_cruise_start, const std::optional<path::PathFix>& fix, Remarks& remarks);
 
-/// Sets the state of charge by the autopilot's counter, which counts from `initial_soc_percent` on, where it is not
-/// known otherwise.
+/// Sets the state of charge, if it is not known otherwise, by the autopilot's counter of charge, which began at
+/// `initial_soc_percent`.
 void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
                                LiveBattery& result);
 
-/// The alarms of a state, most severe first: silent link, probability of missing the reserve, voltage below the
-/// battery's model, power outside the model's 95 % interval. `before`: of the last state. A grade that was reached ends
-/// at half of its threshold, so that an alarm near it does not come and go.
-std::vector<Alarm> alarms_of(const LiveState& state, const std::optional<PredictionInput>& input,
-                             const std::vector<Alarm>& before);
+/// Returns the alarms of a state, most severe first: silent link, probability of missing the reserve, voltage below the
+/// battery's model, power outside the model's 95 % interval. `before` are those of the last state: a grade ends at half
+/// of its threshold, so that an alarm near it does not come and go.
+std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<PredictionInput>& input,
+                                   const std::vector<LiveAlarm>& before);
 
 }  // namespace flightwatt::live

@@ -1,6 +1,7 @@
+#include "live/state/soc_estimation.h"
+
 #include "base/statistics.h"
 #include "base/units.h"
-#include "live/state/moment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include "flight/flight_series.h"
 #include "live/sources.h"
+#include "telemetry/message_decoder.h"
 #include "telemetry/telemetry_log.h"
 
 #include <cstddef>
@@ -15,33 +16,35 @@
 
 namespace flightwatt::live {
 
-/// Received messages as columns in bounded memory, the same as of a log with these messages.
+/// Stores received messages as columns in bounded memory, the same columns as of a log with these messages.
 class TelemetryStore {
   public:
-    static constexpr std::size_t max_senders = 8;   ///< with stored rows
-    static constexpr std::size_t max_devices = 64;  ///< of one message
+    static constexpr std::size_t max_senders = 8;   ///< senders with stored rows
+    static constexpr std::size_t max_devices = 64;  ///< devices of one message
 
-    /// Without `motion`: no bank angles, which are most frequent, and no positions, which take most time to convert.
+    /// Stores a flight by the definitions of its .log, else by the built-in ones. Without `motion` there are no bank
+    /// angles, which are most frequent, and no positions, which take most time to convert.
     TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool motion = true);
 
-    /// A message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
+    /// Adds a message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
     void add(double time_s, std::string_view message, std::span<const double> values = {});
     void clear();
     void drop_before(double time_s);
     void drop(const std::string& sender);
-    /// Drops all other senders, also in future.
+    /// Drops the rows of all other senders, also of later messages.
     void keep_only(const std::string& sender);
-    /// Retains every second row of the largest table, of each device; and from now on every second one received.
+    /// Keeps every second row of each device in the largest table, and from now on every second one received.
     void thin();
 
-    /// Number of rows of all senders.
+    /// Returns the number of rows of all senders.
     std::size_t rows() const;
-    /// The sender of most rows; empty without rows.
+    /// Returns the sender of most rows; empty without rows.
     std::string busiest_sender() const;
+    /// Returns the series of a sender.
     flight::FlightSeries series(const std::string& sender) const;
-    /// Unusable messages and values, by reason.
+    /// Returns the numbers of unusable messages and values, by reason.
     std::map<std::string, std::size_t> skipped() const;
-    /// Received rows for each retained one, of the thinned messages.
+    /// Returns the number of received rows for each kept one, by name of the thinned messages.
     std::map<std::string, std::size_t> thinned() const;
 
   private:
@@ -60,7 +63,8 @@ class TelemetryStore {
     std::map<std::string, std::size_t> beyond_limits_;  ///< by reason
 };
 
-/// Accepts, corrects or holds the times of one sender, so that an error of one does not affect the others:
+/// Accepts, corrects or holds the times of the messages of one sender, so that an error in one does not affect the
+/// others:
 /// - within 10 s of the latest: accepted;
 /// - otherwise held until five lines agree; then
 ///   - forwards: a gap, of any duration, as a link may be lost for as long;
@@ -73,10 +77,10 @@ class ClockFilter {
     static constexpr std::size_t min_confirmations = 5;
     static constexpr double late_s = 2.0;
 
-    /// Takes a message with a time and appends the accepted ones. True where they are the first after a restart.
+    /// Takes a message with a time and appends the accepted ones. Returns whether they are the first after a restart.
     bool push(IncomingMessage message, std::vector<IncomingMessage>& accepted);
     bool is_late(double time_s) const { return started_ && time_s + offset_s_ < latest_s_ - late_s; }
-    /// At the end of the telemetry: accepts held messages that are ahead of the latest.
+    /// Ends the telemetry: accepts held messages that are later than the latest.
     void flush(std::vector<IncomingMessage>& accepted);
 
     std::size_t unconfirmed() const { return unconfirmed_; }

@@ -1,9 +1,14 @@
+#include "mission/file/cruise_toml.h"
+
 #include "base/input_file.h"
-#include "mission/file/mission_tables.h"
+#include "mission/file/named_file.h"
+#include "path/area.h"
 #include "path/cruise_path.h"
 #include "path/path_entries.h"
+#include "path/plan_blocks.h"
 #include "path/plan_files.h"
 #include "path/trajectory.h"
+#include "path/waypoint_files.h"
 
 #include <algorithm>
 #include <array>
@@ -133,13 +138,13 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
     require_one_file(path);
     const path::AutopilotSettings settings{
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s};
-    if (path.has("waypoints")) return path::read_waypoints(file_of(path, "waypoints"), settings);
+    if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
         if (!path.has("spacing_m") || !path.has("heading_deg"))
             throw InputError(path.where("area"), "an area needs spacing_m and heading_deg",
                              "give the distance between its lines, spacing_m = 30, and their direction clockwise from "
                              "north, heading_deg = 90");
-        const auto file = file_of(path, "area");
+        const auto file = named_file(path, "area");
         const double spacing_m = number_in(between(path::min_radius_m, path::max_radius_m), path, "spacing_m");
         return path::parse_area(read_file(file), file.string(), spacing_m,
                                 number_in(between(-360.0, 360.0), path, "heading_deg"));
@@ -150,7 +155,7 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
                          "give one: blocks = [\"Survey\"] or waypoint_order = [\"1\", \"2\"], in the order of the "
                          "flight; `flightwatt path PLAN.xml` lists the blocks");
     }
-    const auto file = file_of(path, "flight_plan");
+    const auto file = named_file(path, "flight_plan");
     const auto text = read_file(file);
     if (path.has("waypoint_order"))
         return {path::parse_flight_plan(text, file.string(), path.strings("waypoint_order"))};
@@ -219,7 +224,7 @@ path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntr
         throw InputError(home->where(), "home has a latitude, and the path has none", "give east_m and north_m");
     entries.push_back(last);
     defaults.return_to_start = false;
-    const auto path = path_of(entries, defaults);
+    const auto path = build_path(entries, defaults);
     return local_position_at(path, {path.elements.size(), 0.0});
 }
 
@@ -238,7 +243,7 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
                 "end (docs/missions.md), or ask without [path], with duration_s");
         repeated->circles = *reading.circles;
     }
-    auto path = path_of(entries, defaults);
+    auto path = build_path(entries, defaults);
     if (packs) mission.packs->home = read_home(*packs, entries, defaults);
     if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
     return path;

@@ -1,7 +1,8 @@
+#include "mission/file/payload_toml.h"
+
 // payload_kg of a mission: what a payload adds to the power, as the flights show it or by an assumption.
 
 #include "mechanical/mechanical_model.h"
-#include "mission/file/mission_tables.h"
 
 #include <algorithm>
 #include <cmath>

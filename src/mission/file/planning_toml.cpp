@@ -1,6 +1,7 @@
+#include "mission/file/planning_toml.h"
+
 #include "base/toml_reader.h"
 #include "battery/battery_toml.h"
-#include "mission/file/mission_tables.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,6 +1,7 @@
+#include "mission/file/schedule_toml.h"
+
 #include "base/number.h"
 #include "base/units.h"
-#include "mission/file/mission_tables.h"
 
 #include <algorithm>
 #include <set>

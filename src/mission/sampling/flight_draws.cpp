@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/prediction.h"
+#include "mission/sampling/joint_spread.h"
 #include "mission/simulation/load_segments.h"
 #include "path/cruise_path.h"
 
@@ -105,7 +106,7 @@ PhaseDeviations phase_deviations(const FlightUncertainty& spreads, std::span<con
         deviations.of.at(level_index(phase)) = normals[level_index(phase)] * spreads.level_sd_w[phase];
         deviations.of.at(duration_index(phase)) = normals[duration_index(phase)] * spreads.duration_sd_s[phase];
     }
-    for (const auto& joint : spreads.of_flights) {
+    for (const auto& joint : spreads.joint) {
         std::vector<double> own;
         for (const auto quantity : joint.quantities) own.push_back(normals[quantity]);
         const auto students = student_vector(own, joint.degrees_of_freedom);
@@ -169,19 +170,19 @@ void move_component(const ComponentSpread& spread, std::span<const double> z, st
     }
 }
 
-constexpr std::size_t of_battery = 5;
-constexpr std::size_t of_wind = 2;
+// Numbers that each flight needs for the battery and for the wind.
+constexpr std::size_t battery_draws = 5;
+constexpr std::size_t wind_draws = 2;
 constexpr double min_initial_soc_percent = 0.1;
 
-/// Numbers of the phases, the battery and the components before this one.
 bool initial_charge_varies(const MissionSetup& mission) { return mission.uncertainty.initial_soc_sd_percent > 0.0; }
 
 }  // namespace
 
 std::size_t count_normals(const MissionSetup& mission) {
-    std::size_t count = phase_quantities + of_battery;
+    std::size_t count = phase_quantities + battery_draws;
     for (const auto& component : mission.compute.components) count += 1 + component.profile.power_w.size();
-    return count + (mission.cruise_path ? of_wind : 0) + (initial_charge_varies(mission) ? 1 : 0);
+    return count + (mission.cruise_path ? wind_draws : 0) + (initial_charge_varies(mission) ? 1 : 0);
 }
 
 std::vector<double> draw_normals(std::size_t count, std::uint64_t seed, std::uint64_t index) {
@@ -198,7 +199,7 @@ void apply_draw(const MissionSetup& mission, const FlightUncertainty& spreads, s
     move_phases(mission, deviations, spreads.max_rise_w, flight);
     flight.battery = mission.battery;
     move_battery(spreads.battery, normals.subspan(phase_quantities), flight.battery);
-    auto left = normals.subspan(phase_quantities + of_battery);
+    auto left = normals.subspan(phase_quantities + battery_draws);
     for (std::size_t i = 0; i < spreads.components.size(); ++i) {
         auto& power_w = flight.compute.components[i].profile.power_w;
         power_w = mission.compute.components[i].profile.power_w;

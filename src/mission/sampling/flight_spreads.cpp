@@ -42,7 +42,7 @@ void find_wind(const MissionSetup& mission, FlightUncertainty& spreads) {
 
 /// A quantity of each flight that counts in a phase.
 template <typename Shown>
-std::vector<std::optional<double>> of_flights(const MissionSetup& mission, Phase phase, const Shown& shown) {
+std::vector<std::optional<double>> flight_values(const MissionSetup& mission, Phase phase, const Shown& shown) {
     std::vector<std::optional<double>> values;
     for (const auto& flight : mission.mechanical->flights) {
         const auto& part = flight.phases[phase];
@@ -59,7 +59,7 @@ void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spr
     if (deviation.degrees_of_freedom < infinite_dof) {
         EstimatedSpread spread{level_index(phase), deviation.sd_w, deviation.degrees_of_freedom, {}};
         if (deviation.flights > 0) {
-            spread.of_flights = of_flights(mission, phase, [](const auto& part) { return part.mean_power_w; });
+            spread.flight_values = flight_values(mission, phase, [](const auto& part) { return part.mean_power_w; });
             if (!is_known_of_flights(spread)) basis += ", correlated with nothing: the model has no mean_power_w";
         }
         estimated.push_back(std::move(spread));
@@ -76,7 +76,8 @@ void find_duration(const MissionSetup& mission, Phase phase, FlightUncertainty& 
     auto& sd_s = spreads.duration_sd_s[phase];
     EstimatedSpread spread{duration_index(phase), 0.0, infinite_dof, {}};
     if (mission.mechanical)
-        spread.of_flights = of_flights(mission, phase, [](const auto& part) { return std::optional(part.duration_s); });
+        spread.flight_values =
+            flight_values(mission, phase, [](const auto& part) { return std::optional(part.duration_s); });
     std::string basis = "no flights that differ: state duration_sd_s";
     if (const auto stated_s = mission.uncertainty.duration_sd_s[phase]) {
         sd_s = *stated_s;
@@ -229,7 +230,7 @@ double energy_degrees_of_freedom(const MissionSetup& mission, const FlightUncert
         if (mission.duration_s[phase] == 0.0) continue;
         const auto add = [&](std::size_t quantity, double sd_j) {
             double freedom = infinite_dof;
-            for (const auto& joint : spreads.of_flights)
+            for (const auto& joint : spreads.joint)
                 if (std::ranges::count(joint.quantities, quantity) > 0) freedom = joint.degrees_of_freedom;
             add_variance(energy, sd_j * sd_j, freedom);
         };
@@ -253,7 +254,7 @@ FlightUncertainty collect_uncertainty(const MissionSetup& mission) {
         }
         find_duration(mission, phase, spreads, estimated);
     }
-    spreads.of_flights = estimate_joint_distributions(estimated);
+    spreads.joint = estimate_joint_distributions(estimated);
     find_wind(mission, spreads);
     find_compute(mission, spreads);
     find_battery(mission, spreads);

@@ -1,4 +1,4 @@
-#include "mission/sampling/flight_spreads.h"
+#include "mission/sampling/joint_spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ using Normal = boost::math::normal_distribution<double, Policy>;
 /// The flights that have the quantity of each of `spreads`, a row a flight, less their means.
 Eigen::MatrixXd centred_flights(const std::vector<EstimatedSpread>& spreads) {
     std::size_t flights = 0;
-    for (const auto& spread : spreads) flights = std::max(flights, spread.of_flights.size());
+    for (const auto& spread : spreads) flights = std::max(flights, spread.flight_values.size());
     std::vector<Eigen::RowVectorXd> rows;
     for (std::size_t i = 0; i < flights; ++i) {
         Eigen::RowVectorXd row(static_cast<Eigen::Index>(spreads.size()));
@@ -33,7 +33,7 @@ Eigen::MatrixXd centred_flights(const std::vector<EstimatedSpread>& spreads) {
                 row(static_cast<Eigen::Index>(k)) = 0.0;
                 continue;
             }
-            const auto& value = spreads[k].of_flights[i];
+            const auto& value = spreads[k].flight_values[i];
             is_complete = is_complete && value.has_value();
             row(static_cast<Eigen::Index>(k)) = value.value_or(0.0);
         }
@@ -119,7 +119,7 @@ std::vector<double> student_vector(std::span<const double> normals, double degre
 }
 
 bool is_known_of_flights(const EstimatedSpread& spread) {
-    return std::ranges::count_if(spread.of_flights, [](const auto& value) { return value.has_value(); }) >= 2;
+    return std::ranges::count_if(spread.flight_values, [](const auto& value) { return value.has_value(); }) >= 2;
 }
 
 std::vector<JointDistribution> estimate_joint_distributions(const std::vector<EstimatedSpread>& spreads) {

@@ -13,43 +13,47 @@
 
 namespace flightwatt::mission {
 
-/// Remaining charge of drawn flights of a mission.
+/// The remaining charge of drawn flights of a mission.
 struct LandingDistribution {
-    std::vector<double> left_percent;  ///< rising; negative where the battery failed: FlightOutcome::remaining_percent
-    double nominal_percent = 0.0;      ///< of the flight as stated
+    std::vector<double> left_percent;  ///< FlightOutcome::remaining_percent, rising; negative if the battery failed
+    double nominal_percent = 0.0;      ///< remaining charge of the mission as stated
     double reserve_percent = 0.0;
-    double sd_percent = 0.0;  ///< of left_percent; 0 where nothing differs
+    double sd_percent = 0.0;  ///< standard deviation of left_percent; 0 if nothing differs
 
-    /// The part of the flights that lands below the reserve.
+    /// Returns the fraction of the flights that lands below the reserve.
     double below() const;
-    /// Of `below`, by the number of flights; 0 where nothing varies.
+    /// Returns the standard error of below(), by the number of flights; 0 if nothing differs.
     double standard_error() const;
-    /// The state of charge that `probability` of the flights land with or above.
+    /// Returns the state of charge [%] at or above which a fraction `probability` of the flights lands.
     double quantile_percent(double probability) const;
-    /// That above the reserve: not negative just where as many keep the reserve.
+    /// Returns the same less the reserve: not negative if and only if that fraction of the flights keeps the reserve.
     double spare_percent(double probability) const { return quantile_percent(probability) - reserve_percent; }
 };
 
+/// Default number of drawn flights.
 inline constexpr std::size_t landing_flights = 20000;  ///< standard error of a probability of 0.95: 0.0015
 
-/// Flies `flights` flights of the mission (sampling/flight_draws.h), with a seed of its own: the same for each call, so
-/// that schedules are compared on the same flights, and independent of any --samples.
+/// Draws and simulates `flights` flights of the mission (sampling/flight_draws.h). The seed is the same in each call,
+/// so that schedules are compared on the same flights, and differs from that of --samples.
 LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty,
                                   std::size_t flights = landing_flights);
 
-/// The same with as few flights as show on which side of `probability` (0.5 to below 1) the mission is, by four
-/// standard errors. Throws std::invalid_argument for another probability.
+/// Draws flights as draw_landings(), but only until they show by four standard errors whether the mission keeps its
+/// reserve with more or less than `probability` (0.5 to below 1). Throws std::invalid_argument for another probability.
 LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
                                               double probability, std::size_t max_flights = landing_flights);
 
-/// Secant search with bracketing for the least margin above a reserve whose plan keeps the reserve with a probability.
+/// Searches the least margin above a reserve with which a plan keeps the reserve with a probability: by secants, with
+/// bracketing.
 class MarginSearch {
   public:
+    /// Begins the search at a margin.
     explicit MarginSearch(double first_percent) : margin_percent_(first_percent) {}
 
     double margin_percent() const { return margin_percent_; }
 
-    /// Surplus of the plan's flights with that probability, and its target.
+    /// Adds the result of the plan with the current margin: the surplus of its flights with that probability, and the
+    /// target of that.
     void add_result(double slack_percent, double wanted_percent) {
         auto& end_percent = slack_percent >= 0.0 ? enough_percent_ : too_little_percent_;
         end_percent = margin_percent_;
@@ -58,13 +62,13 @@ class MarginSearch {
         move_to(margin_percent_ + step * (wanted_percent - slack_percent));
     }
 
-    /// There is no plan with this margin.
+    /// States that there is no plan with the current margin.
     void mark_infeasible() {
         enough_percent_ = margin_percent_;
         move_to(std::midpoint(too_little_percent_.value_or(0.0), margin_percent_));
     }
 
-    /// The bracket is closed.
+    /// Returns whether the bracket is closed.
     bool has_converged() const {
         return too_little_percent_ && enough_percent_ && *enough_percent_ - *too_little_percent_ < 1e-6;
     }
@@ -75,7 +79,7 @@ class MarginSearch {
         double slack_percent;
     };
 
-    /// Margin per point of slack, by the last two plans.
+    /// Returns the change of margin per point of slack, by the last two plans.
     double margin_per_slack(double slack_percent) const {
         constexpr double least = 0.5;
         constexpr double most = 8.0;
@@ -97,35 +101,37 @@ class MarginSearch {
     std::optional<double> enough_percent_;
 };
 
-/// A drawn flight.
+/// A drawn flight, ready to be simulated.
 struct DrawnFlight {
     MissionSetup setup;
     std::vector<LoadSegment> segments;
-    std::vector<double> times_s = {};  ///< at which its charge is noted: rising, and segments start there
+    std::vector<double> times_s = {};  ///< times at which its charge is noted: rising, and at starts of segments
 };
 
-/// How one flight ended.
+/// The end of one simulated flight.
 struct FlightOutcome {
     double final_soc_percent = 0.0;
     bool depleted = false;
-    bool battery_failure = false;  ///< that, or cut off, or beyond the power limit, or on a path that the wind forbids
+    bool battery_failure = false;  ///< depleted, cut off, beyond the power limit, or on a path that the wind forbids
     /// Final charge [points]; after a failure minus the later demand, as a fraction of the full energy.
     double remaining_percent = 0.0;
-    std::vector<double> soc_percent;  ///< at the times that were asked for
+    std::vector<double> soc_percent;  ///< at DrawnFlight::times_s
 };
 
-/// A battery failure counts as below the reserve at any charge.
+/// Returns whether a flight lands below the reserve; one with a battery failure does at any charge.
 inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_percent) {
     return landing.battery_failure || landing.final_soc_percent < reserve_soc_percent;
 }
 
-/// Draws flight number `number` onto `flight`, which is the mission or another flight of it: copying less is faster.
+/// Overwrites `flight`, which is the mission or an earlier drawn flight of it, with drawn flight number `number`:
+/// copying less is faster.
 using FlightDraw = std::function<void(std::size_t number, DrawnFlight& flight)>;
 
-/// One flight, through its segments as advance_segment() does.
+/// Simulates one flight through its segments by advance_segment().
 FlightOutcome simulate_flight(const DrawnFlight& flight);
 
-/// Flights of a mission from number `first` on, on all threads. The result of a flight depends on its number alone.
+/// Draws and simulates `count` flights of a mission from number `first`, on all threads. The result of a flight depends
+/// on its number alone.
 std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
                                      std::size_t count);
 

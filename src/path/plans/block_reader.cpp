@@ -1,6 +1,8 @@
+#include "path/plans/block_reader.h"
+
 #include "base/toml_reader.h"
-#include "path/plans/flight_plan.h"
 #include "path/plans/patterns.h"
+#include "path/plans/plan_expressions.h"
 
 #include <algorithm>
 #include <array>
@@ -137,8 +139,8 @@ class BlockReader {
     double rounds(const pugi::xml_node& stage, std::initializer_list<std::string_view> counters, double round_m,
                   std::string_view pattern) {
         const auto until = attribute(stage, "until");
-        auto count = end_of(until, counters);
-        const auto time_s = end_of(until, {"stage_time", "NavBlockTime"});
+        auto count = find_limit(until, counters);
+        const auto time_s = find_limit(until, {"stage_time", "NavBlockTime"});
         if (!count && time_s && counters.size() > 0 && settings_.airspeed_m_per_s > 0.0)
             count = *time_s * settings_.airspeed_m_per_s / round_m;
         if (count) require_in(at_most(largest_circle_count), *count, "the number of rounds", where(plan_, stage));
@@ -220,7 +222,7 @@ class BlockReader {
         if (!place) return;
         pattern(stage, *place).fly_to(*place->place);
         const auto until = attribute(stage, "until");
-        const auto time_s = end_of(until, {"stage_time", "NavBlockTime"});
+        const auto time_s = find_limit(until, {"stage_time", "NavBlockTime"});
         if (time_s && *time_s > 0.0)
             entries_.back().hold_s = time_s;
         else

@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "base/toml_reader.h"
+#include "path/plans/plan_expressions.h"
 
 #include <algorithm>
 #include <cctype>

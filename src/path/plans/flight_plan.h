@@ -2,71 +2,45 @@
 
 #include "path/plan_files.h"
 
-#include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
 
 namespace flightwatt::path {
 
-/// Value of sums and products of numbers, and of names and calls that `value_of` knows; none for anything else.
-using NamedValues = std::function<std::optional<double>(const std::string&)>;
-std::optional<double> evaluate(std::string_view expression, const NamedValues& value_of);
-
-/// Name and arguments of "nav_line_run(WP_1, WP_2, nav_radius)".
-std::pair<std::string, std::vector<std::string>> function_call(const std::string& text);
-
-/// The number above which a condition wants one of the names, as "NavCircleCount() @GT 0.5" or "stage_time>10".
-std::optional<double> end_of(const std::string& condition, std::initializer_list<std::string_view> names);
-
-/// The parts between any of the separators that are not empty.
-std::vector<std::string> split(const std::string& text, const char* separators);
-
 /// A flight plan of Paparazzi as XML.
 struct FlightPlan {
     std::string file;
-    std::vector<std::size_t> line_ends;  ///< offsets
+    std::vector<std::size_t> line_ends;  ///< offsets of the line ends in the file
     pugi::xml_document document;
     pugi::xml_node root;                             ///< <flight_plan> or <procedure>
     std::vector<pugi::xml_node> waypoints;           ///< in the order of their numbers
-    std::multimap<std::string, std::size_t> number;  ///< of a waypoint, by its name
-    std::map<std::string, double> variables;         ///< of <variables>, where the value is a number
+    std::multimap<std::string, std::size_t> number;  ///< numbers of the waypoints, by their names
+    std::map<std::string, double> variables;         ///< values of <variables> that are numbers
 };
 
-/// Throws InputError for a text that is not XML, or no flight plan.
+/// Reads a flight plan. Throws InputError for a text that is not XML, or no flight plan.
 FlightPlan load_flight_plan(std::string_view text, const std::string& file);
 
-/// An attribute, whose name may be in capitals (older plans); empty without it.
+/// Returns an attribute, whose name may be in capitals (older plans); empty without it.
 std::string attribute(const pugi::xml_node& node, const std::string& name);
 
+/// Returns the place of a node in the file, for errors.
 Location where(const FlightPlan& plan, const pugi::xml_node& node);
 
-/// The number of a waypoint, named with or without the prefix "WP_". Throws InputError at `asking` unless one has the
-/// name.
+/// Returns the number of a waypoint, named with or without the prefix "WP_". Throws InputError at `asking` if none has
+/// the name.
 std::size_t waypoint_number(const FlightPlan& plan, std::string_view name, const Location& asking);
 
-/// Its place in metres from lat0 and lon0, and its altitude above the sea. Throws InputError for a waypoint without.
+/// Returns a waypoint as an entry: its place in metres from lat0 and lon0, and its altitude above the sea. Throws
+/// InputError if it has no place.
 PathEntry waypoint_entry(const FlightPlan& plan, std::size_t number);
 
-/// Value of an expression with the plan's variables, ground_alt, GetAltRef(), flight_altitude and
-/// WaypointAlt(WP_...).
+/// Evaluates an expression with the plan's variables, ground_alt, GetAltRef(), flight_altitude and WaypointAlt(WP_...).
 std::optional<double> evaluate(const FlightPlan& plan, std::string_view expression);
-
-/// The state between blocks.
-struct BlockState {
-    std::vector<PathEntry> entries;
-    std::map<std::string, double> values;  ///< settings, and values set by the stages
-};
-
-/// Appends the movements of a block to the entries, and returns what of it is not flown. Throws InputError, placed at
-/// the stage, for one that cannot be read.
-std::vector<std::string> read_block(const FlightPlan& plan, const pugi::xml_node& block,
-                                    const AutopilotSettings& settings, BlockState& state);
 
 }  // namespace flightwatt::path

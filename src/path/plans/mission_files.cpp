@@ -1,6 +1,7 @@
+#include "path/plans/mission_files.h"
+
 #include "base/number.h"
 #include "base/toml_reader.h"
-#include "path/plan_files.h"
 #include "path/plans/json_text.h"
 #include "path/plans/patterns.h"
 

@@ -1,5 +1,6 @@
+#include "path/plans/plan_expressions.h"
+
 #include "base/number.h"
-#include "path/plans/flight_plan.h"
 
 #include <algorithm>
 #include <cctype>
@@ -106,7 +107,7 @@ std::pair<std::string, std::vector<std::string>> function_call(const std::string
             close > open ? split(call.substr(open + 1, close - open - 1), ",") : std::vector<std::string>()};
 }
 
-std::optional<double> end_of(const std::string& condition, std::initializer_list<std::string_view> names) {
+std::optional<double> find_limit(const std::string& condition, std::initializer_list<std::string_view> names) {
     auto text = boost::algorithm::replace_all_copy(without_blanks(condition), "@GT", ">");
     std::erase_if(text, [](char c) { return c == '(' || c == ')'; });
     const auto above = text.find('>');

@@ -11,15 +11,16 @@ struct WindVelocity {
     double east_m_per_s = 0.0;
     double north_m_per_s = 0.0;
 };
+/// Returns the velocity of a wind.
 WindVelocity velocity_of(const Wind& wind);
 
 /// The wind triangle of one course.
 struct WindTriangle {
     double ground_speed_m_per_s = 0.0;
-    double cosine = 1.0;  ///< of the angle between heading and course
+    double cosine = 1.0;  ///< cosine of the angle between heading and course
 };
 
-/// `horizontal_m_per_s`: the airspeed's part along the ground. None as ground_speed_m_per_s.
+/// Solves the wind triangle for the horizontal part of the airspeed; std::nullopt as ground_speed_m_per_s().
 std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
 
 /// A leg or circles as lines over ground, measured in metres from their start.
@@ -30,19 +31,21 @@ class GroundTrack {
 
     double length_m() const { return length_m_; }
 
-    /// The whole track can be flown with any horizontal airspeed above this one.
+    /// Returns the horizontal airspeed above which the whole track can be flown.
     double min_horizontal_m_per_s() const;
 
-    /// Duration of the track between two distances from its start, at a horizontal airspeed above the minimum.
+    /// Returns the duration of the track between two distances from its start, at a horizontal airspeed above the
+    /// minimum.
     double time_s(double from_m, double to_m, double horizontal_m_per_s) const;
 
-    /// Mean square of the load factor over that time.
+    /// Returns the mean square of the load factor over that time.
     double load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const;
 
-    /// Length of a segment over which the motion counts as constant: all of it if straight or without wind.
+    /// Returns the length of a segment over which the motion counts as constant: the whole track if straight or without
+    /// wind.
     double segment_length_m() const;
 
-    /// Number of segments after which the motion repeats.
+    /// Returns the number of segments after which the motion repeats.
     std::size_t segments_per_turn() const;
 
   private:
@@ -57,12 +60,12 @@ class GroundTrack {
         double speed_fourth_m4_per_s3 = 0.0;
     };
     Turned turned(double from_m, double to_m, double horizontal_m_per_s) const;
-    /// The same from the course with the wind to the one at a place.
+    /// Returns the same from the course that is downwind to the course at a place.
     Turned turned_until(double along_m, double horizontal_m_per_s) const;
 
     double length_m_ = 0.0;
-    double course_rad_ = 0.0;       ///< at its start
-    double curvature_rad_m_ = 0.0;  ///< course gained a metre; 0: straight
+    double course_rad_ = 0.0;       ///< course at its start
+    double curvature_rad_m_ = 0.0;  ///< change of the course per metre; 0: straight
     WindVelocity wind_;
 };
 

@@ -53,7 +53,7 @@ FigureData phase_rows(const flight::FlightPhases& phases) {
 
 FigureData edge_rows(const ReportFlight& flight) {
     FigureData data({"time_s"}, {"edge", "evidence"});
-    for (const auto& edge : edges_of(flight)) data.add({edge.time_s}, {edge.name, edge.evidence});
+    for (const auto& edge : name_edges(flight)) data.add({edge.time_s}, {edge.name, edge.evidence});
     return data;
 }
 
@@ -99,7 +99,7 @@ std::string caption_of(bool has_model) {
 
 }  // namespace
 
-std::vector<NamedEdge> edges_of(const ReportFlight& flight) {
+std::vector<NamedEdge> name_edges(const ReportFlight& flight) {
     std::vector<NamedEdge> edges;
     if (flight.phases.sorties.empty()) return edges;
     const auto& clock = flight.data.power_w.empty() ? flight.data.altitude_m : flight.data.power_w;
@@ -130,7 +130,7 @@ Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalMod
         if (!panels.empty()) panel["layer"].erase(2);  // only the first panel names the phases
         views.push_back(fmt::format("panel_{}", views.size()));
         values["name"] = views.back();
-        panels.push_back(filled(std::move(panel), values));
+        panels.push_back(fill_template(std::move(panel), values));
     };
     const auto add_track = [&](const flight::Track& track, std::string_view title, int height) {
         if (track.empty()) return;

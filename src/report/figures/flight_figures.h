@@ -1,54 +1,26 @@
 #pragma once
 
-#include "battery/discharge_record.h"
-#include "battery/identified_battery.h"
-#include "mechanical/model_fit.h"
-#include "mechanical/physical_fit.h"
-#include "mechanical/validation.h"
+#include "mechanical/mechanical_model.h"
 #include "report/batch_content.h"
 #include "report/figure.h"
 
-#include <span>
 #include <string>
 #include <vector>
 
-/// Figures of flights, models, validation and battery.
-
 namespace flightwatt::report {
 
-/// An edge of a phase.
+/// An edge of a phase with its name and evidence.
 struct NamedEdge {
     double time_s = 0.0;
     std::string name;
     std::string evidence;
 };
 
-/// The edges of a flight's phases; the common edge of two phases once.
-std::vector<NamedEdge> edges_of(const ReportFlight& flight);
+/// Returns the edges of a flight's phases; the common edge of two phases once.
+std::vector<NamedEdge> name_edges(const ReportFlight& flight);
 
-/// Altitude, throttle and power of an accepted flight over time, with phases, edges and the model's curve of each
-/// phase, scaled to its duration.
+/// Returns the figure of an accepted flight: altitude, throttle and power over time, with phases, edges and the model's
+/// curve of each phase, scaled to its duration. `model` may be null.
 Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalModel* model, const std::string& id);
-
-/// The mechanical model as the paper's Fig. 2, a panel a phase: curve, envelope of the flights and 95 % band of the
-/// mean (bands without times: unknown).
-Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerPhase<mechanical::CurveBand>& bands,
-                    const std::string& id);
-
-/// Errors of the predicted energy by leave-one-out: a point a flight, a row a model.
-Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id);
-
-/// Power over airspeed in level flight with its 95 % band, the flown range, the bins less the power of their climb and
-/// turns, and the best speeds with their intervals.
-Figure physical_figure(const mechanical::PhysicalFit& fit, std::span<const mechanical::BinnedFlight> flights,
-                       const std::string& id);
-
-/// Terminal voltage over time, measured and modelled from the current, a panel a flight. `records` are those that were
-/// identified, in their order.
-Figure voltage_figure(const battery::BatteryIdentification& identified,
-                      std::span<const battery::DischargeRecord> records, const std::string& id);
-
-/// Open-circuit voltage over the state of charge with 95 % intervals of its knots; by a chart below the flights' range.
-Figure open_circuit_figure(const battery::BatteryIdentification& identified, const std::string& id);
 
 }  // namespace flightwatt::report

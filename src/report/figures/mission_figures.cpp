@@ -113,7 +113,7 @@ VegaJson panel_of(const compute::Component& component, VegaJson panel) {
         nodes["encoding"].erase("color");
     }
     const auto parameter = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
-    return filled(
+    return fill_template(
         std::move(panel),
         {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});
 }

@@ -13,15 +13,16 @@
 
 namespace flightwatt::report {
 
-/// Profiled power of every component over its first parameter, a panel a component, a line for each value of the
-/// others; with 95 % intervals where standard errors are known. `compute` is not empty.
+/// Returns the figure of the profiled power of every component over its first parameter, a panel a component, a line
+/// for each value of the others; with 95 % intervals if standard errors are known. `compute` is not empty.
 Figure profile_figure(const compute::ComputeModel& compute, const std::string& id);
 
-/// State of charge over time as the paper's Fig. 3, with common phases; below, the schedules, coloured by power. `data`
-/// is missions_data() of the missions, which are not empty.
+/// Returns the figure of the state of charge over time as the paper's Fig. 3, with the phases that all missions have in
+/// common; below, the schedules, coloured by power. `data` is missions_data() of the missions, of which there is at
+/// least one.
 Figure schedule_figure(std::span<const SimulatedMission> missions, const VegaJson& data, const std::string& id);
 
-/// A parameter of a component: an axis of the map.
+/// A parameter of a component as an axis of a map.
 struct QosAxis {
     std::size_t component = 0;
     std::size_t parameter = 0;
@@ -29,41 +30,47 @@ struct QosAxis {
     std::vector<double> nodes;  ///< profiled values and thirds between them
 };
 
-/// Final state of charge [%] of one configuration throughout, over two parameters (the paper's Fig. 4).
+/// The final state of charge [%] with one configuration throughout the mission, over two parameters (the paper's Fig.
+/// 4).
 struct QosMap {
     QosAxis x;
     QosAxis y;
-    std::vector<double> soc_percent;  ///< at the nodes, x runs fastest; NaN where the battery fails
+    std::vector<double> soc_percent;  ///< at the nodes, x varies fastest; NaN if the battery fails
     std::string others;               ///< values of further parameters; may be empty
+    /// Returns the final state of charge at node i of x and j of y.
     double at(std::size_t i, std::size_t j) const { return soc_percent[j * x.nodes.size() + i]; }
 };
 
-/// The map of a mission's model, battery and durations over its first two parameters; others have their maximum.
-/// std::nullopt with fewer than two parameters.
+/// Computes the map of a mission over its first two parameters; others have their maximum. std::nullopt for fewer than
+/// two parameters.
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission);
 
-/// A configuration that runs throughout.
+/// The result of one configuration throughout a mission.
 struct QosCell {
     mission::Simulation simulation;
-    std::optional<double> probability;  ///< of keeping the reserve; unknown without uncertainty
+    std::optional<double> probability;  ///< probability of keeping the reserve; absent without a known uncertainty
 };
 
-/// The profiled values of a mission's first two parameters, at most 8 each; others have their maximum.
+/// The results over the profiled values of a mission's first two parameters, at most 8 each; others have their maximum.
 struct QosGrid {
     QosAxis x;
     QosAxis y;
-    std::vector<QosCell> cells;  ///< x runs fastest
+    std::vector<QosCell> cells;  ///< x varies fastest
 };
 
-/// std::nullopt with fewer than two parameters.
+/// Simulates the grid of a mission; std::nullopt for fewer than two parameters.
 std::optional<QosGrid> qos_grid(const mission::MissionSetup& mission);
 
-/// Equal for missions with the same mechanical model, profiled components, or map (flight, components and battery).
+// Keys that are equal for missions with an equal part.
+
+/// Returns a key of the mission's mechanical model.
 std::string model_key(const mission::MissionSetup& mission);
+/// Returns a key of the profiled components.
 std::string software_key(const mission::MissionSetup& mission);
+/// Returns a key of the values that the map depends on: flight, components and battery.
 std::string map_key(const mission::MissionSetup& mission);
 
-/// The map as the paper's Fig. 4: a cell is the mean of its corners.
+/// Returns the figure of a map as the paper's Fig. 4: a cell has the mean of its corners.
 Figure qos_map_figure(const QosMap& map, const std::string& id);
 
 }  // namespace flightwatt::report

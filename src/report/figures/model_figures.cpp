@@ -1,8 +1,9 @@
+#include "report/figures/model_figures.h"
+
 #include "base/statistics.h"
 #include "base/text.h"
 #include "battery/identification.h"
 #include "mechanical/validation.h"
-#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 #include <cmath>

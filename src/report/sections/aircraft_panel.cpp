@@ -1,10 +1,12 @@
+#include "report/sections/aircraft_panel.h"
+
 #include "base/statistics.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "battery/battery.h"
 #include "flight/flight_identity.h"
 #include "report/batch_content.h"
-#include "report/sections/sections.h"
+#include "report/sections/flights_section.h"
 
 #include <algorithm>
 #include <map>

@@ -1,8 +1,10 @@
+#include "report/sections/battery_section.h"
+
 #include "base/error.h"
 #include "base/units.h"
 #include "cli/output/battery_output.h"
 #include "report/figures/flight_figures.h"
-#include "report/sections/sections.h"
+#include "report/figures/model_figures.h"
 
 #include <algorithm>
 #include <iterator>

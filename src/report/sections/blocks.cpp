@@ -1,6 +1,7 @@
+#include "report/sections/blocks.h"
+
 #include "base/csv.h"
 #include "base/number.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+#include "report/sections/flights_section.h"
+
 #include "base/parallel.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -6,7 +8,8 @@
 #include "report/batch_content.h"
 #include "report/figures/flight_figures.h"
 #include "report/html.h"
-#include "report/sections/sections.h"
+#include "report/sections/blocks.h"
+#include "report/sections/exclusions.h"
 
 #include <algorithm>
 #include <atomic>
@@ -80,7 +83,7 @@ void add_excluded(Section& section, std::span<const ReportFlight> flights) {
 /// Edges of a flight's phases with their evidence.
 std::string edges_html(const ReportFlight& flight) {
     TextTable table{{"edge", "time [s]", "evidence"}, {}};
-    for (const auto& edge : edges_of(flight)) table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence});
+    for (const auto& edge : name_edges(flight)) table.rows.push_back({edge.name, fixed(edge.time_s, 1), edge.evidence});
     return table_html(table, "Edges of the phases");
 }
 
@@ -168,30 +171,6 @@ std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
         ids.push_back(std::move(id));
     }
     return ids;
-}
-
-TextTable exclusions_table(std::span<const Exclusion> exclusions) {
-    constexpr std::size_t max_names = 10;
-    std::vector<std::vector<const Exclusion*>> groups;
-    for (const auto& exclusion : exclusions) {
-        const auto same = std::ranges::find_if(groups, [&](const auto& group) {
-            return group.front()->from == exclusion.from && group.front()->reason == exclusion.reason;
-        });
-        (same == groups.end() ? groups.emplace_back() : *same).push_back(&exclusion);
-    }
-    TextTable table{{"flights", "number", "excluded", "reason"}, {}};
-    for (const auto& group : groups) {
-        std::vector<std::string> names;
-        names.reserve(group.size());
-        for (const auto* exclusion : group) names.push_back(exclusion->flight);
-        if (names.size() > max_names) {
-            names.resize(max_names);
-            names.push_back(fmt::format("{} more", group.size() - max_names));
-        }
-        table.rows.push_back({fmt::format("{}", fmt::join(names, ", ")), fmt::format("{}", group.size()),
-                              group.front()->from, group.front()->reason});
-    }
-    return table;
 }
 
 Section flights_section(const BatchContent& batch, const Progress& progress) {

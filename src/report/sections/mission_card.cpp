@@ -1,7 +1,8 @@
+#include "report/sections/mission_card.h"
+
 #include "base/text.h"
 #include "base/units.h"
 #include "report/html.h"
-#include "report/sections/simulated_mission.h"
 
 #include <algorithm>
 #include <cmath>

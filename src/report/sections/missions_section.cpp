@@ -1,10 +1,13 @@
+#include "report/sections/missions_section.h"
+
 #include "cli/output/mission_output.h"
 #include "cli/output/replay_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_summary.h"
 #include "report/figures/mission_figures.h"
+#include "report/sections/model_section.h"
 #include "report/sections/page_data.h"
-#include "report/sections/sections.h"
+#include "report/sections/summary_section.h"
 
 #include <algorithm>
 #include <iterator>

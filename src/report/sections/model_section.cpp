@@ -1,3 +1,5 @@
+#include "report/sections/model_section.h"
+
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -7,7 +9,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/physical_fit.h"
 #include "report/figures/flight_figures.h"
-#include "report/sections/sections.h"
+#include "report/figures/model_figures.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,7 @@
 #include "report/sections/page_data.h"
 
+#include "report/sections/mission_card.h"
+
 #include <array>
 #include <cmath>
 

@@ -9,22 +9,25 @@
 #include <string>
 #include <vector>
 
-/// Data that the page's own script draws (web/drawings.js), as JSON in the page.
+/// Data in the page, as JSON, that the page's script draws (web/drawings.js).
 namespace flightwatt::report {
 
-/// A number with that many decimals, or null.
+/// Returns a number with that many decimals; null for NaN and infinity.
 VegaJson rounded_json(double value, int decimals);
 
-/// The element "data-ID".
+/// Returns the HTML element "data-ID" with JSON.
 std::string data_block(const std::string& id, const VegaJson& data);
 
-/// Curve of the state of charge [%], charge at landing (null: the battery fails at end_s), duration.
+/// Returns the curve of the state of charge [%], the charge at landing (null: the battery fails at end_s) and the
+/// duration.
 VegaJson curve_data(const mission::Simulation& simulation);
 
-/// Each mission's curve, band of 5 to 95 % of the drawn flights, phases, reserve and outcome, in the order given.
+/// Returns the curve, the band of 5 to 95 % of the drawn flights, phases, reserve and outcome of each mission, in their
+/// order.
 VegaJson missions_data(std::span<const SimulatedMission> missions);
 
-/// Each cell's curve, probability and utility, x running fastest; `missions` are indices of those of the same flight.
+/// Returns the curve, probability and utility of each cell, x varying fastest. `missions` are the indices of the
+/// missions with the same flight.
 VegaJson quality_data(const QosGrid& grid, const std::vector<std::size_t>& missions, double reserve_percent);
 
 }  // namespace flightwatt::report

@@ -13,80 +13,59 @@
 
 namespace flightwatt::report {
 
-/// A plan compared with all other schedules.
+/// A planned schedule compared with all other schedules.
 struct PlannedSchedule {
-    bool feasible = false;  ///< it keeps the reserve
+    bool feasible = false;  ///< the plan keeps the reserve
     double bound = 0.0;     ///< proven maximum utility of schedules that keep it; 0 if infeasible
 };
 
-/// A mission with its simulation.
+/// A mission with its simulation for the report.
 struct SimulatedMission {
     mission::Mission mission;
     mission::Simulation simulation;
     std::string title;                                      ///< the mission's name, with " (2)" after an equal one
-    std::optional<PlannedSchedule> planned = std::nullopt;  ///< of a mission without a schedule
+    std::optional<PlannedSchedule> planned = std::nullopt;  ///< plan of a mission without a schedule
 };
 
-/// Plans missions without a schedule and simulates all, with 300 rows a curve. A curve ends where the battery cannot
-/// deliver the power.
+/// Plans the missions without a schedule and simulates all, with 300 points a curve. A curve ends when the battery
+/// cannot deliver the power.
 std::vector<SimulatedMission> simulate_for_report(const std::vector<mission::MissionVariant>& missions,
                                                   const Progress& progress = {});
 
-/// Probability of a likely landing above the reserve.
+/// Probability of landing above the reserve that counts as likely.
 inline constexpr double reach_probability = 0.95;
 
-/// Reach of a mission, and the capacity that it needs.
+/// The reach of a mission, and the capacity that it needs.
 struct MissionAssessment {
-    std::optional<mission::Reach> reach;                ///< as modelled
-    std::optional<mission::Reach> reach_at_95_percent;  ///< with reach_probability
-    std::string no_reach_reason;
-    std::optional<double> capacity_ah;  ///< minimum for the reserve, if more than it has
-    bool is_unplanned = false;          ///< reach and capacity are of the schedule with the least energy
+    std::optional<mission::Reach> reach;                ///< reach as modelled
+    std::optional<mission::Reach> reach_at_95_percent;  ///< reach with reach_probability
+    std::string no_reach_reason;                        ///< reason why there is no reach; empty if there is one
+    std::optional<double> capacity_ah;                  ///< minimum for the reserve, if it is more than the mission's
+    bool is_unplanned = false;  ///< reach and capacity are those of the schedule with the least energy
 };
 
-/// `mission_of` reads the mission's file.
+/// Computes reach and capacity of a mission; `mission_of` reads its file.
 MissionAssessment assess_mission(const SimulatedMission& simulated, const mission::MissionLoader& mission_of);
 
-/// How a mission ends, the best first.
+/// The outcomes of a mission, the best first.
 enum class Outcome {
-    keeps,     ///< the reserve, with a probability of 95 % or more, or as modelled without a known one
-    may_miss,  ///< as modelled it keeps it, but with less probability, or not with the capacity by the pack's flights
+    keeps,     ///< keeps the reserve with a probability of 95 % or more, or as modelled without a known one
+    may_miss,  ///< keeps it as modelled, but with less probability, or not with the capacity by the pack's flights
     misses,    ///< lands below the reserve as modelled
     fails,     ///< runs empty, is cut off, or asks for more power than the battery can deliver
 };
 
-/// Returns the probability of landing below the reserve; none where nothing shows how flights differ.
+/// Returns the probability of landing below the reserve; std::nullopt if the variability of flights is unknown.
 std::optional<double> known_probability_below_reserve(const mission::MissionSummary& summary);
 
+/// Returns the outcome of a mission.
 Outcome outcome_of(const SimulatedMission& simulated);
 
-/// A mission for readers.
-struct MissionCard {
-    Outcome outcome = Outcome::keeps;
-    std::string words;                    ///< of the outcome: "below reserve"
-    std::string lead;                     ///< "Lands with 16.2 % of its charge"
-    std::string runs;                     ///< its software: "detection 10 fps, encryption 240 key bits, all the time"
-    std::string landing;                  ///< charge: "16.2 %"
-    std::string probability;              ///< of keeping the reserve: "12 %"; "unknown" without uncertainty
-    std::string reach_name;               ///< "Longest cruise at 95 %"
-    std::string reach;                    ///< "19 min 22 s"
-    std::string planned;                  ///< "22 min"; empty for a path
-    std::string help;                     ///< what keeps the reserve, or what is spare; may be empty
-    std::vector<std::string> notes = {};  ///< warnings, utility, power model
-};
-
-MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessment& answer);
-
-/// "keeps the reserve of 20 %", "the battery lasts".
-std::string describe_aim(double reserve_soc_percent);
-
-/// "12 %", "under 1 %", "over 99 %".
-std::string probability_text(double probability);
-
-/// Indices of the missions, the worst outcome first, then the least probable, then the lowest charge at landing.
+/// Returns the indices of the missions: the worst outcome first, then the least probable, then the lowest charge at
+/// landing.
 std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions);
 
-/// JSON of a mission.
+/// The parts of a mission's JSON.
 struct MissionOutput {
     const SimulatedMission* simulated = nullptr;
     const MissionAssessment* assessment = nullptr;

@@ -1,6 +1,9 @@
+#include "report/sections/summary_section.h"
+
 #include "report/figures/mission_figures.h"
+#include "report/sections/aircraft_panel.h"
+#include "report/sections/mission_card.h"
 #include "report/sections/page_data.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,9 @@
+#include "report/sections/tracks_section.h"
+
 #include "base/text.h"
 #include "base/units.h"
+#include "report/sections/aircraft_panel.h"
 #include "report/sections/page_data.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,13 +6,13 @@
 
 namespace flightwatt::telemetry {
 
-/// Whether the bytes begin with a DataFlash message, perhaps behind a damaged page.
+/// Returns whether the bytes begin with a DataFlash message, perhaps after a damaged page.
 bool is_dataflash(std::string_view bytes);
 
-/// Whether a message of DataFlash's form defines the clock of PX4's sdlog2.
+/// Returns whether a log of DataFlash's form is PX4's sdlog2: one of its messages defines that clock.
 bool is_sdlog2(std::string_view bytes);
 
-/// Reads a DataFlash log, binary or as text, into the rows that the collector wants (docs/formats.md).
+/// Reads the messages that the collector requests from a DataFlash log, binary or as text (docs/formats.md).
 void read_dataflash(std::string_view bytes, bool as_text, RowCollector& rows);
 
 }  // namespace flightwatt::telemetry

@@ -15,35 +15,36 @@
 
 namespace flightwatt::telemetry {
 
-/// A field in the bytes of a message.
+/// The place, type and scale of a field in the bytes of a message.
 struct LoggedField {
     std::string name;
     std::size_t offset = 0;
     WireType type = WireType::uint8;
     double factor = 1.0;
 
-    /// NaN for text, and where the bytes end before it.
+    /// Returns the field's value times its factor; NaN for text, and if the bytes end before it.
     double number(std::string_view bytes) const;
 };
 
-/// A message as a log defines it, and where its fields go.
+/// A message as a log defines it, and the columns into which its fields are read.
 struct LoggedMessage {
     std::string name = {};
-    std::size_t bytes = 0;  ///< of the whole message
+    std::size_t bytes = 0;  ///< size of the whole message
     std::vector<LoggedField> fields = {};
-    std::optional<std::size_t> clock = {};  ///< field of the time
-    bool is_clock = false;                  ///< its times count although it is not requested
+    std::optional<std::size_t> clock = {};  ///< index of the field with the time
+    bool is_clock = false;                  ///< its times are used even if the message is not requested
     double ticks_per_s = 1e6;
-    std::size_t count = 0;
-    std::optional<std::size_t> table = {};                       ///< of a requested message
-    std::vector<std::optional<std::size_t>> column_fields = {};  ///< of each of its columns
+    std::size_t count = 0;                                       ///< messages of this definition in the log
+    std::optional<std::size_t> table = {};                       ///< index of its table, if it is requested
+    std::vector<std::optional<std::size_t>> column_fields = {};  ///< the field of each column of the table
 
+    /// Returns the index of a field; std::nullopt if the message has none of that name.
     std::optional<std::size_t> index_of(std::string_view field) const;
 };
 
-/// The rows of the requested messages of a log that defines them, one after the other. A row whose time leaves the
-/// clock of the rows around it is damaged: a jump counts only if the next row with a time confirms it. Rows without a
-/// time are spread between the times around them, but not over a pause of the log.
+/// Collects the rows of the requested messages of a log that defines its own messages, in the order of the log. A jump
+/// of the time is accepted only if the next row with a time confirms it; otherwise the row is damaged. Rows without a
+/// time are spread evenly between the times around them, but not over a pause of the log.
 class RowCollector {
   public:
     using ValueOf = std::function<double(std::size_t field)>;
@@ -51,25 +52,25 @@ class RowCollector {
     RowCollector(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted);
 
     const std::filesystem::path& file() const { return file_; }
-    /// Finds the table of a message, if it is requested.
+    /// Sets the table and the column fields of a message, if it is requested.
     void bind(LoggedMessage& message);
     /// Adds a row at `offset` (bytes, or line) if the message is requested. Its time is std::nullopt if the message has
     /// none, and NaN if it is damaged.
     void add(const LoggedMessage& message, std::optional<double> time_s, std::size_t offset, const ValueOf& value_of);
     /// Counts bytes (of text: lines) that are no message. Throws InputError if there are too many.
     void skip(std::size_t offset, std::size_t count);
-    /// The time of the last row; NaN before the first.
+    /// Returns the time of the last row; NaN before the first.
     double last_s() const { return last_s_; }
-    /// The tables of the rows up to now.
+    /// Returns the tables with the rows added so far.
     std::vector<MessageTable>& tables() { return sender_.tables; }
-    /// Ends the last rows: one whose time nothing confirms is left out, unless it is the only one.
+    /// Ends the log: the last row is left out if its time is not confirmed, unless it is the only one.
     void end();
-    /// Lists a message, if the log has any.
+    /// Adds a message to the list of the log's messages, if the log has any of it.
     void list(const LoggedMessage& message);
     LogFacts& facts() { return result_.facts; }
 
-    /// The log; tables without rows are removed. `as_lines`: the unit of what was skipped. Throws InputError if no
-    /// message has a time.
+    /// Returns the log, without tables that have no rows. Skipped input is counted in lines if `as_lines`, else in
+    /// bytes. Throws InputError if no message has a time.
     AutopilotLog take(bool as_lines);
 
   private:
@@ -91,16 +92,16 @@ class RowCollector {
     SenderLog sender_;
     std::vector<std::vector<bool>> is_bound_;  ///< of each table's columns: some definition has it
     double last_s_ = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Row> untimed_;         ///< behind the last time
-    std::optional<Row> pending_;       ///< its time is not confirmed
-    std::vector<Row> behind_pending_;  ///< without a time
-    double timed_s_ = 0.0;             ///< between times of a log that does not pause
-    double intervals_ = 0.0;           ///< of all rows in that time
+    std::vector<Row> untimed_;         ///< rows after the last row with a time
+    std::optional<Row> pending_;       ///< row whose time is not confirmed yet
+    std::vector<Row> behind_pending_;  ///< rows without a time after it
+    double timed_s_ = 0.0;             ///< sum of the intervals between times, without pauses of the log
+    double intervals_ = 0.0;           ///< number of intervals between rows in that time
     SkipCounter skips_;
     std::size_t gap_offset_ = 0;
-    std::size_t gap_ = 0;  ///< skipped since the last row
+    std::size_t gap_ = 0;  ///< bytes or lines skipped since the last row
     std::size_t skipped_ = 0;
-    bool has_times_ = false;  ///< some message has, requested or not
+    bool has_times_ = false;  ///< some message, requested or not, has a time
     std::size_t early_ = 0;   ///< rows before the first time
     std::size_t first_early_ = 0;
 };

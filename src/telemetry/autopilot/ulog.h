@@ -6,10 +6,11 @@
 
 namespace flightwatt::telemetry {
 
+/// Returns whether the bytes begin as a ULog.
 bool is_ulog(std::string_view bytes);
 
-/// Reads a ULog into the rows that the collector wants (docs/formats.md). Throws InputError for a log with features of
-/// a newer format.
+/// Reads the topics that the collector requests from a ULog (docs/formats.md). Throws InputError for a log with
+/// features of a newer format.
 void read_ulog(std::string_view bytes, RowCollector& rows);
 
 }  // namespace flightwatt::telemetry

@@ -8,17 +8,17 @@
 #include <optional>
 #include <string_view>
 
-/// Single frames of each framing, by checksum alone (docs/formats.md, "Binary logs and links").
+/// Detection and parsing of single frames by their checksums (docs/formats.md, "Binary logs and links").
 namespace flightwatt::telemetry {
 
-/// The framing whose consecutive frames with valid checksums fill most of the bytes, if there is one.
-/// `is_whole`: no more bytes follow, so a single frame that fills them is enough.
+/// Returns the framing whose consecutive frames with valid checksums fill most of the bytes, if there is one. If
+/// `is_whole`, no more bytes follow, and a single frame that fills them is enough.
 std::optional<Framing> detect_framing(std::string_view bytes, bool is_whole);
 
-/// The header version that matches most of the first few thousand frames; std::nullopt if neither does.
+/// Returns the header version that matches most of the first few thousand frames; std::nullopt if neither does.
 std::optional<LinkVersion> detect_version(std::string_view bytes, Framing framing, const MessageDictionary& dictionary);
 
-/// Calls use.template operator()<framing>().
+/// Calls use.template operator()<framing>() and returns its result.
 template <typename Use>
 auto with_framing(Framing framing, Use&& use) {
     switch (framing) {
@@ -36,26 +36,29 @@ auto with_framing(Framing framing, Use&& use) {
 struct Frame {
     std::size_t size = 0;               ///< bytes of the whole frame
     std::string_view message;           ///< header and fields; empty where it carries none
-    std::uint8_t source = 0;            ///< of card frames: 0 telemetry, 1 datalink
-    std::uint32_t time_100us = 0;       ///< of card frames
+    std::uint8_t source = 0;            ///< in card frames: 0 telemetry, 1 datalink
+    std::uint32_t time_100us = 0;       ///< in card frames: time in units of 0.1 ms
     std::array<char, 320> unescaped{};  ///< memory of `message` if the frame was escaped
 };
 
+/// Result of parsing a frame at a position.
 enum class ParseStatus {
     none,        ///< no frame begins here
-    incomplete,  ///< one may, but there are too few bytes
+    incomplete,  ///< a frame may begin here, but there are too few bytes
     frame,
 };
 
+/// Returns the byte at `p` as a number.
 inline std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
 
-/// The first byte of a frame.
+/// Returns the first byte of a frame.
 constexpr char sync_byte(Framing framing) { return framing == Framing::xbee ? '\x7E' : '\x99'; }
 
-/// Number of bytes behind the message at the end of a frame.
+/// Returns the number of bytes after the message at the end of a frame.
 constexpr std::ptrdiff_t checksum_bytes(Framing framing) { return framing == Framing::link ? 2 : 1; }
 
-/// Whether sync bytes and length at `p` indicate two consecutive frames. False for XBees, whose lengths may be escaped.
+/// Returns whether sync bytes and length at `p` indicate two consecutive frames. False for XBees, whose lengths may be
+/// escaped.
 template <Framing framing>
 bool looks_like_two_frames(const char* p, const char* end) {
     if (framing == Framing::xbee || end - p < 2 || *p != sync_byte(framing)) return false;
@@ -63,6 +66,7 @@ bool looks_like_two_frames(const char* p, const char* end) {
     return size < end - p && p[size] == sync_byte(framing);
 }
 
+/// Parses a frame of an SD card's log at `p`: sync byte, length, source, time, message, checksum.
 inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame) {
     constexpr std::size_t overhead = 8;
     if (end - p < 2) return ParseStatus::incomplete;
@@ -81,6 +85,7 @@ inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame
     return ParseStatus::frame;
 }
 
+/// Parses a frame of a link at `p`: sync byte, length, message, two checksums.
 inline ParseStatus parse_link_frame(const char* p, const char* end, Frame& frame) {
     constexpr std::size_t overhead = 4;
     if (end - p < 2) return ParseStatus::incomplete;
@@ -100,11 +105,12 @@ inline ParseStatus parse_link_frame(const char* p, const char* end, Frame& frame
     return ParseStatus::frame;
 }
 
-/// `escaped`: XBees in API mode 2 send 0x7E, 0x7D, 0x11 and 0x13 as 0x7D and the byte with bit 5 turned.
+/// Parses a packet received by an XBee at `p`. If `escaped` (API mode 2), 0x7E, 0x7D, 0x11 and 0x13 are sent as 0x7D
+/// and the byte with bit 5 inverted.
 ParseStatus parse_xbee_frame(const char* p, const char* end, bool escaped, Frame& frame);
 
-/// Parses an unescaped or escaped frame: if both have a valid checksum, the one that another frame follows; if both are
-/// followed, the shorter.
+/// Parses an unescaped or escaped packet of an XBee: if both have a valid checksum, the one that another frame follows;
+/// if both are followed, the shorter.
 ParseStatus parse_any_xbee_frame(const char* p, const char* end, Frame& frame);
 
 /// Parses the frame that begins with the sync byte at `p`.
@@ -115,9 +121,9 @@ ParseStatus parse_frame(const char* p, const char* end, Frame& frame) {
     return parse_any_xbee_frame(p, end, frame);
 }
 
-/// A frame that is accepted, and its message by the definitions.
+/// An accepted frame, and its message by the definitions.
 struct FoundFrame {
-    std::size_t offset = 0;  ///< of its first byte, from the first that was scanned
+    std::size_t offset = 0;  ///< position of its first byte, from the first scanned byte
     std::uint8_t sender = 0;
     std::uint8_t class_id = 0;
     std::uint8_t id = 0;
@@ -127,7 +133,8 @@ struct FoundFrame {
     bool length_matches = false;           ///< the fields have the defined length
 };
 
-/// Reads the header and looks the message up; no message if there are too few bytes for the header.
+/// Reads the header of a frame's message and finds its definition; no message if there are too few bytes for the
+/// header.
 inline FoundFrame read_message_header(const Frame& frame, LinkVersion version, const MessageDictionary& dictionary) {
     FoundFrame found;
     const auto& bytes = frame.message;

@@ -9,10 +9,10 @@
 
 namespace flightwatt::telemetry {
 
-/// From this many zeros between frames on they are preallocated space; fewer are damage.
+/// Minimum number of zeros between frames that counts as preallocated space; fewer are damage.
 inline constexpr std::size_t min_padding_zeros = 16;
 
-/// Time of messages on links, which have none of their own: that of the last TIMESTAMP message [ms] (OpenLog).
+/// Gives messages on links, which have no time of their own, that of the last TIMESTAMP message (OpenLog).
 class LinkTime {
   public:
     explicit LinkTime(const MessageDictionary& dictionary) {
@@ -25,7 +25,7 @@ class LinkTime {
         }
     }
 
-    /// Time of a message that fits its definition; std::nullopt before the first TIMESTAMP.
+    /// Returns the time of a message that fits its definition; std::nullopt before the first TIMESTAMP.
     std::optional<double> time_s(const FoundFrame& found) {
         constexpr double ms_per_s = 1000.0;
         if (found.id == id_ && found.class_id == MessageDictionary::telemetry_class)
@@ -39,10 +39,12 @@ class LinkTime {
     std::optional<double> last_s_;
 };
 
-/// Time of card frames, whose counter overflows after 119.3 h. An overflow is a time before the last one that is,
-/// across the end of the range, less than an hour later; a damaged time or a clock that was set back is not.
+/// Converts the times of card frames, whose counter overflows after 119.3 h, to seconds. A time before the last one
+/// counts as an overflow if it is, across the end of the range, less than an hour later; otherwise it is damaged, or
+/// the clock was set back.
 class FrameClock {
   public:
+    /// Returns the time of the next frame.
     double time_s(std::uint32_t time_100us) {
         constexpr std::uint32_t hour = 36'000'000;
         auto round = round_;

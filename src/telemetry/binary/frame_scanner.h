@@ -12,15 +12,15 @@
 
 namespace flightwatt::telemetry {
 
-/// Bytes between frames.
+/// A run of bytes between frames.
 struct Gap {
     std::size_t offset = 0;
     std::size_t bytes = 0;
-    std::size_t zeros = 0;    ///< at the end: preallocated space, not damage
+    std::size_t zeros = 0;    ///< zeros at its end: preallocated space, not damage
     bool is_cut_off = false;  ///< begins with an incomplete frame
 };
 
-/// Input after the scanned bytes.
+/// What may follow the scanned bytes.
 enum class InputContinuation {
     more,   ///< more bytes, immediately
     pause,  ///< perhaps more bytes, later
@@ -34,7 +34,8 @@ enum class InputContinuation {
 template <Framing framing>
 class FrameScanner {
   public:
-    /// Without a version, the one that matches more of the frames so far is used. `dictionary` must outlive this.
+    /// Scans by the definitions of `dictionary`, which must outlive this. Without a version, the one that matches more
+    /// of the frames so far is used.
     FrameScanner(const MessageDictionary& dictionary, std::optional<LinkVersion> version)
         : dictionary_(&dictionary), version_(version) {}
 
@@ -128,7 +129,7 @@ class FrameScanner {
         return status;
     }
 
-    /// `counts`: whether the frame is used to detect the version.
+    /// Reads a frame's message by the version, if it is known; `counts` states whether the frame is used to detect it.
     FoundFrame read(const Frame& frame, bool counts) {
         return version_ ? read_message_header(frame, *version_, *dictionary_) : read_of_any_version(frame, counts);
     }
@@ -151,7 +152,7 @@ class FrameScanner {
         return fit_v1_ > fit_v2_ ? LinkVersion::v1 : LinkVersion::v2;
     }
 
-    /// Whether a matching frame begins in [from, to). Each byte is searched once.
+    /// Returns whether a matching frame begins in [from, to). Each byte is searched once.
     bool find_matching_frame(const char* from, const char* to) {
         if (fitting_ != nullptr && fitting_ >= from) return fitting_ < to;
         fitting_ = nullptr;

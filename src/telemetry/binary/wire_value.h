@@ -11,7 +11,7 @@
 
 namespace flightwatt::telemetry {
 
-/// A little-endian number of any alignment.
+/// Returns the little-endian number at `p`, of any alignment.
 template <typename T>
 T wire_number(const char* p) {
     T value;
@@ -25,11 +25,11 @@ T wire_number(const char* p) {
     return value;
 }
 
-/// The decimal number of fewest digits that is read as this float: 11.62 of the float 11.6199999. So a binary log and
-/// its text have the same values.
+/// Returns the decimal number of fewest digits that is read as this float: 11.62 for the float 11.6199999. So a binary
+/// log and its text have the same values.
 double shortest_decimal(float value);
 
-/// One element as a number; a char is its code.
+/// Returns one element as a number; a char as its code.
 inline double wire_value(WireType type, const char* p) {
     return with_wire_type(type, [&]<typename T>() -> double {
         if constexpr (std::is_same_v<T, char>) return wire_number<std::uint8_t>(p);

@@ -101,7 +101,7 @@ double field_value(const DecodePlan::Target& target, std::string_view word) {
     return number_or_nan(target.is_first_element ? word.substr(0, word.find(',')) : word);
 }
 
-std::string assumption_of(const DecodePlan& plan) {
+std::string describe_assumption(const DecodePlan& plan) {
     if (plan.definition == nullptr || (plan.from_log && plan.units.empty())) return {};
     const auto text = plan.from_log ? fmt::format("{}", fmt::join(plan.units, ", ")) : plan.definition->origin;
     return fmt::format("{}: {}", plan.request.message, text);
@@ -135,12 +135,12 @@ MessageTable empty_table(const DecodePlan& plan) {
 
 void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log) {
     for (const auto& plan : plans) {
-        if (auto text = assumption_of(plan); !text.empty())
+        if (auto text = describe_assumption(plan); !text.empty())
             log.assumed_definitions.push_back({std::move(text), first_time_s(log, plan.request.message)});
     }
 }
 
-MessageTable& table_of(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line) {
+MessageTable& find_or_add_table(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line) {
     auto found = std::ranges::find(log.senders, sender, &SenderLog::id);
     if (found == log.senders.end()) {
         if (log.senders.size() == max_senders) {

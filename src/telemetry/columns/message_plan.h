@@ -11,16 +11,17 @@
 #include <string_view>
 #include <vector>
 
-/// Common part of the readers of text and of frames: from requested messages to the columns of a TelemetryLog.
+/// Common part of the readers of text and of frames: fills the columns of a TelemetryLog with the requested messages.
 namespace flightwatt::telemetry {
 
+/// Maximum number of fields of a message; further ones are ignored.
 inline constexpr std::size_t max_fields = 64;
 
-/// The columns of a message: their fields and factors.
+/// Plan of decoding one requested message: its definition, and field and factor of each column.
 struct DecodePlan {
     MessageRequest request;
-    std::vector<MessageDefinition> candidates;  ///< the .log's definition, or the built-in ones
-    bool from_log = false;
+    std::vector<MessageDefinition> candidates;      ///< the .log's definition, or the built-in ones
+    bool from_log = false;                          ///< the candidates are the .log's
     std::string definitions;                        ///< "the .log" or "messages.xml"
     const MessageDefinition* definition = nullptr;  ///< chosen with the first message that fits
     struct Target {
@@ -33,30 +34,32 @@ struct DecodePlan {
     std::vector<std::string> units;  ///< unexpected units of the .log, and the assumption made for each
 };
 
+/// Returns the plan of a requested message, by the .log's definition, else with the built-in ones as candidates.
 DecodePlan make_decode_plan(const MessageRequest& request, const std::optional<LogConfiguration>& configuration);
 
-/// Chooses the definition by the number of fields, once. Returns why a message with that number cannot be used.
+/// Chooses the definition by the number of fields of the first message. Returns why a message with `field_count` fields
+/// cannot be used; std::nullopt if it can.
 std::optional<SkipReason> check_field_count(DecodePlan& plan, std::size_t field_count);
 
 /// Splits the fields of a message into `words`, up to `max_fields` of them; returns how many the message has (at most
 /// `max_fields`). A carriage return at the end is ignored.
 std::size_t split_fields(std::string_view fields, std::vector<std::string_view>& words);
 
-/// The raw number of a target from its word; NaN if it is not a finite number.
+/// Returns the raw number of a target from its word; NaN if it is not a finite number.
 double field_value(const DecodePlan::Target& target, std::string_view word);
 
-/// The assumption about the message because the .log or its unit is missing; empty without one.
-std::string assumption_of(const DecodePlan& plan);
+/// Returns the assumption about the message that was made as the .log or a unit is missing; empty without one.
+std::string describe_assumption(const DecodePlan& plan);
 
-/// Why a message, or its `field`, cannot be used.
+/// Returns the reason, as text, why a message or its `field` cannot be used.
 std::string describe_skipped(SkipReason reason, const DecodePlan& plan, std::size_t field);
 
-/// The table of the plan's message, without rows.
+/// Returns the table of the plan's message, without rows.
 MessageTable empty_table(const DecodePlan& plan);
 
-/// The sender's table of the plan's message, which is added if it is missing. Throws InputError, at `line`, for more
-/// senders than a network can have.
-MessageTable& table_of(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line);
+/// Returns the sender's table of the plan's message, which is added if it is missing. Throws InputError, at `line`, for
+/// more senders than a network can have.
+MessageTable& find_or_add_table(TelemetryLog& log, std::string_view sender, const DecodePlan& plan, std::size_t line);
 
 /// Appends a row. value_of(target) is the raw number or NaN; on_missing(field) is called for each NaN.
 template <typename ValueOf, typename OnMissing>
@@ -71,7 +74,7 @@ void append_row(MessageTable& table, const DecodePlan& plan, double time_s, cons
     }
 }
 
-/// Adds the assumptions about the log's messages, each with the time from which on it was needed.
+/// Adds the assumptions of all plans to the log, each with the time from which it was needed.
 void note_assumptions(const std::vector<DecodePlan>& plans, TelemetryLog& log);
 
 }  // namespace flightwatt::telemetry

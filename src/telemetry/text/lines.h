@@ -7,8 +7,8 @@
 /// Lines and words of a .data text, without copies.
 namespace flightwatt::telemetry {
 
-/// Removes the next word, and the blank that ends it, from the front of `rest`. Two blanks enclose an empty word; a
-/// blank at the end starts none.
+/// Removes the next word and the blank that ends it from the front of `rest`, and returns the word. Two blanks enclose
+/// an empty word; a blank at the end starts none.
 inline std::string_view take_word(std::string_view& rest, char separator = ' ') {
     const auto word = rest.substr(0, rest.find(separator));
     rest.remove_prefix(std::min(word.size() + 1, rest.size()));

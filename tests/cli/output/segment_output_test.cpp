@@ -3,6 +3,7 @@
 #include "cli/output/segment_output.h"
 
 #include "flight/load_flight.h"
+#include "flight/power_check.h"
 #include "flight/select.h"
 #include "helpers/test_paths.h"
 

@@ -2,6 +2,8 @@
 
 #include "cli/output/watch_output.h"
 
+#include "live/live_state.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

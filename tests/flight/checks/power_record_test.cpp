@@ -14,7 +14,7 @@ TEST(PowerRecord, KnowsTheUsualPowerInTwoStepsOfThrottleWithTenSamples) {
     const auto knows = [](double throttle_percent, std::size_t samples) {
         auto record = test::sound_record();
         for (std::size_t i = 200; i < 200 + samples; ++i) record.throttle_percent[i] = throttle_percent;
-        add_facts(record, test::resting());
+        derive_facts(record, test::resting());
         return !std::isnan(record.usual_w[200]);
     };
     EXPECT_TRUE(knows(60.0, 10));
@@ -28,7 +28,7 @@ TEST(PowerRecord, KnowsTheCurrentAtRestFromTenSamplesOfWhichThoseFarAwayAreLeftO
         auto record = test::sound_record();
         for (std::size_t i = 0; i < samples; ++i) record.current_a[i] = 0.03 + 0.01 * static_cast<double>(i % 3);
         record.current_a[samples - 1] = last_a;
-        add_facts(record, test::resting(samples));
+        derive_facts(record, test::resting(samples));
         return record.at_rest ? record.at_rest->samples : 0;
     };
     EXPECT_EQ(samples_of(10, 0.04), 10U);
@@ -58,7 +58,7 @@ TEST(PowerRecord, TakesATwentiethOfTheUpperQuartileForNoPower) {
     const auto powerless_w = [](std::size_t strong) {
         auto record = test::sound_record();
         for (std::size_t i = 200; i < 200 + strong; ++i) record.power_w[i] *= 2.0;
-        add_facts(record, test::resting());
+        derive_facts(record, test::resting());
         return record.powerless_w;
     };
     EXPECT_NEAR(powerless_w(260), 2.0, 0.03);

@@ -80,8 +80,8 @@ TEST(Circuits, OfDifferentVoltagesAddTheirPowerButNotTheirCurrent) {
     ASSERT_EQ(shares.size(), 2U);
     EXPECT_EQ(shares[0].name, "BAT 1");
     EXPECT_NEAR(shares[0].percent, 100.0 * 98.0 / 122.0, 1e-9);
-    EXPECT_EQ(of_circuit(data, 2).voltage_v.value.at(0), 24.0);
-    EXPECT_THROW(of_circuit(data, 3), InputError);
+    EXPECT_EQ(select_circuit(data, 2).voltage_v.value.at(0), 24.0);
+    EXPECT_THROW(select_circuit(data, 3), InputError);
 }
 
 TEST(Circuits, LeaveOutAMonitorThatIsTheSumOfTwoOthers) {

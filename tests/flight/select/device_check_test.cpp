@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "helpers/damaged_logs.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <cmath>
 #include <functional>

@@ -4,6 +4,7 @@
 #include "helpers/damaged_logs.h"
 #include "helpers/rejected.h"
 #include "helpers/selected_tracks.h"
+#include "telemetry/log_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

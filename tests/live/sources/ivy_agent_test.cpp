@@ -5,6 +5,7 @@
 
 #include "helpers/free_port.h"
 #include "helpers/running_program.h"
+#include "live/received_links.h"
 #include "live/sources.h"
 
 #include <chrono>

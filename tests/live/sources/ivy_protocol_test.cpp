@@ -57,9 +57,9 @@ TEST(IvyLine, IsReadAndWritten) {
     ASSERT_TRUE(message);
     EXPECT_EQ(message->type, 2);
     EXPECT_EQ(message->id, 3);
-    EXPECT_THAT(groups_of(message->arguments), ElementsAre("20 ENERGY 57", "more"));
-    EXPECT_THAT(groups_of("\003\003last"), ElementsAre("", "", "last"));
-    EXPECT_THAT(groups_of(""), ElementsAre());
+    EXPECT_THAT(split_groups(message->arguments), ElementsAre("20 ENERGY 57", "more"));
+    EXPECT_THAT(split_groups("\003\003last"), ElementsAre("", "", "last"));
+    EXPECT_THAT(split_groups(""), ElementsAre());
     EXPECT_TRUE(parse_ivy_line("0 0 \002"));  // a blank before the mark is let pass
     for (const auto* wrong : {"", "2 3", "2\002x", "a 3\002x", "2 b\002x", "\002", "2 99999999999\002"}) {
         EXPECT_FALSE(parse_ivy_line(wrong)) << wrong;

@@ -1,5 +1,6 @@
 // Alarms of states made by hand.
 
+#include "live/live_state.h"
 #include "live/state/moment.h"
 
 #include <string>
@@ -37,11 +38,11 @@ PredictionInput input() {
 }
 
 TEST(AlarmsOf, AGradeEndsAtHalfOfItsThreshold) {
-    std::vector<Alarm> alarms;
+    std::vector<LiveAlarm> alarms;
     std::vector<std::string> grades;
     for (const double probability :
          {0.01, 0.04, 0.06, 0.03, 0.06, 0.02, 0.04, 0.05, 0.19, 0.20, 0.12, 0.21, 0.09, 0.15, 0.024, 0.3, 0.0}) {
-        alarms = alarms_of(flying(probability), input(), alarms);
+        alarms = find_alarms(flying(probability), input(), alarms);
         grades.push_back(alarms.empty() ? "-" : alarms.front().grade);
     }
     EXPECT_THAT(grades, testing::ElementsAre("-", "-", "caution", "caution", "caution", "-", "-", "caution", "caution",
@@ -49,18 +50,18 @@ TEST(AlarmsOf, AGradeEndsAtHalfOfItsThreshold) {
 }
 
 TEST(AlarmsOf, AProbabilityThatVariesAroundAThresholdRaisesOneAlarm) {
-    std::vector<Alarm> alarms;
+    std::vector<LiveAlarm> alarms;
     int changes = 0;
     for (int second = 0; second < 600; ++second) {
         const bool had = !alarms.empty();
-        alarms = alarms_of(flying(0.05 + (second % 2 == 0 ? 0.02 : -0.02)), input(), alarms);
+        alarms = find_alarms(flying(0.05 + (second % 2 == 0 ? 0.02 : -0.02)), input(), alarms);
         changes += had != !alarms.empty() ? 1 : 0;
     }
     EXPECT_EQ(changes, 1);
 }
 
 std::string action_of(const LiveState& state) {
-    const auto alarms = alarms_of(state, input(), {});
+    const auto alarms = find_alarms(state, input(), {});
     return alarms.empty() ? "" : alarms.front().action;
 }
 
@@ -79,7 +80,7 @@ TEST(AlarmsOf, TheActionStatesTheTimeLeft) {
     EXPECT_EQ(action_of(state), "Land within 8 min: 30 of 100 flights run empty");
     state.turn_home.reset();
     EXPECT_EQ(action_of(state), "Land now: 30 of 100 flights run empty");
-    EXPECT_EQ(alarms_of(flying(0.97), input(), {}).front().text,
+    EXPECT_EQ(find_alarms(flying(0.97), input(), {}).front().text,
               "23.4 % at landing, reserve 20 %; probability of missing it 97 %");
 }
 
@@ -88,7 +89,7 @@ TEST(AlarmsOf, WithoutAProbabilityTheExpectedLandingDecides) {
     state.battery->probability_below_reserve.reset();
     EXPECT_EQ(action_of(state), "");
     state.prediction->battery->expected.keeps_reserve = false;
-    EXPECT_EQ(alarms_of(state, input(), {}).front().grade, "alarm");
+    EXPECT_EQ(find_alarms(state, input(), {}).front().grade, "alarm");
 }
 
 TEST(AlarmsOf, ACruiseBeyondTheMissionsWarnsBeforeItIsTooLate) {
@@ -96,14 +97,14 @@ TEST(AlarmsOf, ACruiseBeyondTheMissionsWarnsBeforeItIsTooLate) {
     state.prediction->overtime_s = 60.0;
     EXPECT_EQ(action_of(state), "");
     state.turn_home->latest_in_s = 110.0;
-    EXPECT_EQ(alarms_of(state, input(), {}).front().grade, "caution");
+    EXPECT_EQ(find_alarms(state, input(), {}).front().grade, "caution");
 }
 
 TEST(AlarmsOf, OtherKindsHaveGradesAndActions) {
     auto state = flying(0.06);
     state.time_since_message_s = 31.0;
     state.battery->voltage_residual_v = -0.4;
-    const auto alarms = alarms_of(state, input(), {});
+    const auto alarms = find_alarms(state, input(), {});
     std::vector<std::string> kinds;
     for (const auto& alarm : alarms) {
         kinds.push_back(alarm.grade + " " + alarm.kind);
@@ -111,12 +112,12 @@ TEST(AlarmsOf, OtherKindsHaveGradesAndActions) {
     }
     EXPECT_THAT(kinds, testing::ElementsAre("alarm silence", "alarm voltage", "caution reserve"));
     state.battery->voltage_residual_v = -0.2;
-    EXPECT_EQ(alarms_of(state, input(), alarms).size(), 3U) << "above half of the threshold";
-    EXPECT_EQ(alarms_of(state, input(), {}).size(), 2U);
+    EXPECT_EQ(find_alarms(state, input(), alarms).size(), 3U) << "above half of the threshold";
+    EXPECT_EQ(find_alarms(state, input(), {}).size(), 2U);
     LiveState ground;
     ground.time_since_message_s = 31.0;
     ground.silence_threshold_s = 30.0;
-    EXPECT_EQ(alarms_of(ground, {}, {}).front().grade, "caution") << "the aircraft was switched off";
+    EXPECT_EQ(find_alarms(ground, {}, {}).front().grade, "caution") << "the aircraft was switched off";
 }
 
 TEST(AlarmsOf, APowerOutsideTheModelsIntervalIsACaution) {
@@ -126,9 +127,9 @@ TEST(AlarmsOf, APowerOutsideTheModelsIntervalIsACaution) {
     model.model.physical->degrees_of_freedom = 1e6;
     state.prediction->flown.motion.bins.resize(1);
     state.prediction->cruise.gain = 0.09;
-    EXPECT_TRUE(alarms_of(state, model, {}).empty());
+    EXPECT_TRUE(find_alarms(state, model, {}).empty());
     state.prediction->cruise.gain = 0.11;
-    const auto alarms = alarms_of(state, model, {});
+    const auto alarms = find_alarms(state, model, {});
     ASSERT_EQ(alarms.size(), 1U);
     EXPECT_EQ(alarms.front().grade + " " + alarms.front().kind, "caution model");
 }

@@ -3,6 +3,7 @@
 #include "flight/telemetry_series.h"
 #include "helpers/selected_tracks.h"
 #include "live/sources.h"
+#include "telemetry/log_reader.h"
 
 #include <sstream>
 #include <string>
@@ -20,7 +21,7 @@ std::string energy_line(double time_s, const std::string& sender = "20") {
 void add(TelemetryStore& store, const std::string& lines) {
     std::istringstream text(lines);
     for (std::string line; std::getline(text, line);) {
-        const auto message = message_of_line(line).value();
+        const auto message = parse_message_line(line).value();
         store.add(message.time_s.value(), message.text);
     }
 }

@@ -1,8 +1,11 @@
 
+#include "mission/file/cruise_toml.h"
+
 #include "helpers/path_missions.h"
 #include "helpers/rejected.h"
-#include "mission/file/mission_tables.h"
 #include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
+#include "mission/planned_mission_toml.h"
 #include "mission/simulation.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
+#include "mission/file/planning_toml.h"
+
 #include "helpers/rejected.h"
-#include "mission/file/mission_tables.h"
 #include "mission/mission_file.h"
 
 #include <cmath>

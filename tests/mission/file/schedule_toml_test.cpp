@@ -1,5 +1,6 @@
+#include "mission/file/schedule_toml.h"
+
 #include "helpers/rejected.h"
-#include "mission/file/mission_tables.h"
 
 #include <algorithm>
 #include <random>

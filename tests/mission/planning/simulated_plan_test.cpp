@@ -4,6 +4,7 @@
 #include "helpers/paper_missions.h"
 #include "helpers/small_missions.h"
 #include "mission/feasibility_limits.h"
+#include "mission/mission_file.h"
 #include "mission/plan.h"
 #include "mission/planning/planner.h"
 #include "mission/sampled_flights.h"

@@ -1,3 +1,5 @@
+#include "mission/sampling/joint_spread.h"
+
 #include "base/statistics.h"
 #include "mission/sampling/flight_spreads.h"
 

@@ -1,5 +1,8 @@
+#include "path/plans/mission_files.h"
+
 #include "base/atomic_file.h"
 #include "helpers/rejected.h"
+#include "path/plan_blocks.h"
 #include "path/plan_files.h"
 
 #include <algorithm>

@@ -48,7 +48,7 @@ TEST(FlightFigure, SaysWhereTheLogEnds) {
     auto& landing = flight.phases.sorties.front().phases.back();
     landing.complete = false;
     landing.end.time_s = flight.data.power_w.time_s.back();
-    const auto edges = edges_of(flight);
+    const auto edges = name_edges(flight);
     ASSERT_EQ(edges.size(), 4U);
     EXPECT_EQ(edges[3].name, "the log ends");
 }

@@ -1,8 +1,9 @@
+#include "report/sections/battery_section.h"
+
 #include "base/error.h"
 #include "flight/select.h"
 #include "helpers/synthetic_discharge.h"
 #include "report/figures/flight_figures.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 

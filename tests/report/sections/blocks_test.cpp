@@ -1,4 +1,5 @@
-#include "report/sections/sections.h"
+
+#include "report/sections/blocks.h"
 
 #include <string>
 

@@ -1,7 +1,8 @@
+#include "report/sections/flights_section.h"
+
 #include "flight/load_flight.h"
 #include "flight/select.h"
 #include "helpers/test_paths.h"
-#include "report/sections/sections.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

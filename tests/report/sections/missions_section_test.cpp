@@ -1,7 +1,8 @@
+#include "report/sections/missions_section.h"
+
 #include "helpers/paper_missions.h"
 #include "report/figures/mission_figures.h"
 #include "report/sections/page_data.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 

@@ -1,9 +1,10 @@
 // The sections of a model and of its validation.
 
+#include "report/sections/model_section.h"
+
 #include "helpers/generated_flights.h"
 #include "helpers/generated_motion.h"
 #include "mechanical/table_one.h"
-#include "report/sections/sections.h"
 
 #include <vector>
 

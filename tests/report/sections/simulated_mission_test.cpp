@@ -5,7 +5,10 @@
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
+#include "mission/mission_file.h"
+#include "mission/mission_read_options.h"
 #include "report/html.h"
+#include "report/sections/mission_card.h"
 
 #include <memory>
 

@@ -1,8 +1,11 @@
+#include "report/sections/summary_section.h"
+
 #include "flight/load_flight.h"
 #include "flight/select.h"
 #include "helpers/paper_missions.h"
 #include "helpers/test_paths.h"
-#include "report/sections/sections.h"
+#include "report/sections/aircraft_panel.h"
+#include "report/sections/page_summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

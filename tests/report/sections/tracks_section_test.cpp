@@ -1,11 +1,13 @@
+#include "report/sections/tracks_section.h"
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "flight/load_flight.h"
 #include "flight/select.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
+#include "report/sections/battery_section.h"
 #include "report/sections/page_data.h"
-#include "report/sections/sections.h"
 
 #include <algorithm>
 

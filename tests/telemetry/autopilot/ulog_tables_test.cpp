@@ -3,6 +3,7 @@
 #include "helpers/rejected.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/ulog_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -32,12 +33,12 @@ std::filesystem::path tables() {
 TEST(UlogTables, AreFoundByAnyOfThem) {
     const auto folder = tables();
     for (const auto* name : {"battery_status_1", "vehicle_status_0", "cpuload_0", "battery_status_0"})
-        EXPECT_EQ(ulog_tables_of(folder / fmt::format("log_2_{}.csv", name)), folder / "log_2_battery_status_0.csv");
-    EXPECT_EQ(ulog_tables_of(folder / "log_battery_status_0.csv"), folder / "log_battery_status_0.csv");
+        EXPECT_EQ(find_ulog_tables(folder / fmt::format("log_2_{}.csv", name)), folder / "log_2_battery_status_0.csv");
+    EXPECT_EQ(find_ulog_tables(folder / "log_battery_status_0.csv"), folder / "log_battery_status_0.csv");
     EXPECT_EQ(flight_name(folder / "log_2_battery_status_0.csv"), "log_2");
     EXPECT_EQ(flight_name("a_battery_status_x.csv"), "a_battery_status_x");
-    EXPECT_EQ(ulog_tables_of(test::write_text(folder / "other_0.csv", "timestamp,x\n")), std::nullopt);
-    EXPECT_EQ(ulog_tables_of(test::write_text(folder / "log_2_own_0.csv", "time_s,power_w\n")), std::nullopt);
+    EXPECT_EQ(find_ulog_tables(test::write_text(folder / "other_0.csv", "timestamp,x\n")), std::nullopt);
+    EXPECT_EQ(find_ulog_tables(test::write_text(folder / "log_2_own_0.csv", "time_s,power_w\n")), std::nullopt);
 }
 
 TEST(UlogTables, AreReadAsOneLog) {

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "battery/discharge_record.h"
+#include "flight/flight_data.h"
+#include "live/live_state.h"
+#include "live/prediction.h"
+
+#include <optional>
+
+/// The state of charge of a flight in progress.
+namespace flightwatt::live {
+
+/// Estimates the state of charge at the end of the data by the charge drawn and by voltage; without a usable record (at
+/// rest, or started in flight) by voltage alone. `carried_percent` is the known state of charge at the start of the
+/// data. Sets `record` to the record used.
+LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
+                         const flight::FlightData& data, std::optional<battery::DischargeRecord>& record);
+
+/// Returns the state of charge [%] at a time of a record; std::nullopt before its start.
+std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
+                             double initial_soc_percent, double time_s);
+
+/// Returns the probability of landing below the reserve or not at all, by a first-order reliability method from the
+/// predictive distributions of the energy (Student's t) and of the capacity (normal, if it has an interval;
+/// docs/live.md); std::nullopt without a known uncertainty. `now` has a state.
+std::optional<double> probability_below_reserve(const PredictionInput& input, const Prediction& prediction,
+                                                const LiveBattery& now);
+
+}  // namespace flightwatt::live

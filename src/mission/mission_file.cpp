@@ -1,0 +1,313 @@
+#include "mission/mission_file.h"
+
+#include "base/atomic_file.h"
+#include "base/toml_reader.h"
+#include "base/units.h"
+#include "battery/battery_toml.h"
+#include "compute/profile_reader.h"
+#include "mission/file/cruise_toml.h"
+#include "mission/file/named_file.h"
+#include "mission/file/payload_toml.h"
+#include "mission/file/planning_toml.h"
+#include "mission/file/schedule_toml.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double shortest_phase_s = 1e-3;
+constexpr double min_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in the unit
+constexpr double largest_sd_percent = 1000.0;
+constexpr double max_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
+
+std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
+    if (root.string("mechanical") == "none") return std::nullopt;
+    return mechanical::read_predicting_model(named_file(root, "mechanical"));
+}
+
+/// The held-out score of the model that predicts the power (with an airspeed or a path, that of the cruise), if its
+/// file has one.
+void find_power_model(const TomlTable& root, MissionSetup& mission) {
+    if (!mission.mechanical || !mission.mechanical->validation) return;
+    const auto& validation = *mission.mechanical->validation;
+    const bool knows_airspeed = root.has("airspeed_m_per_s") || root.has("path");
+    const auto model = knows_airspeed ? "physical" : default_model(*mission.mechanical);
+    const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
+    if (score != validation.scores.end())
+        mission.power_model = *score;
+    else if (knows_airspeed)
+        mission.notes.emplace_back(
+            "its cruise power by airspeed is unproven: the model file has no error of it on flights left out");
+}
+
+mechanical::PhaseTimeScaling read_clock(const TomlTable& root, bool has_mechanical) {
+    const auto name = root.optional_string("phase_clock");
+    if (!name) return mechanical::PhaseTimeScaling::scaled;
+    if (!has_mechanical) {
+        throw InputError(root.where("phase_clock"), "phase_clock has no meaning with mechanical = \"none\"",
+                         "leave it out");
+    }
+    if (*name == "stretch") return mechanical::PhaseTimeScaling::scaled;
+    if (*name == "absolute") return mechanical::PhaseTimeScaling::absolute;
+    throw InputError(root.where("phase_clock"), fmt::format("there is no phase_clock '{}'", *name),
+                     "it is \"stretch\" or \"absolute\"");
+}
+
+double read_duration(const TomlTable& durations, std::string_view phase) {
+    const double value = durations.number(phase);
+    if (value == 0.0) return value;
+    return number_in(between(shortest_phase_s, max_phase_s), durations, phase, "or 0: not flown");
+}
+
+/// A cruise whose number is nearer to that of the model's flights in minutes than in seconds.
+void note_minutes(MissionSetup& mission) {
+    const double cruise_s = mission.duration_s[Phase::cruise];
+    const double flown_s = mission.mechanical ? mission.mechanical->phases[Phase::cruise].duration_s : 0.0;
+    if (cruise_s <= 0.0 || cruise_s * std::sqrt(units::seconds_per_minute) >= flown_s) return;
+    mission.notes.push_back(
+        fmt::format("cruise = {0} is {0} s, and the model's flights cruised for {1:.0f} s: are {0} "
+                    "minutes meant, cruise = {2}?",
+                    cruise_s, flown_s, cruise_s * units::seconds_per_minute));
+}
+
+void read_durations(const TomlTable& root, MissionSetup& mission) {
+    const auto& mechanical = mission.mechanical;
+    if (mechanical) {
+        for (const auto phase : all_phases) mission.duration_s[phase] = mechanical->phases[phase].duration_s;
+    } else if (!root.has("duration_s")) {
+        throw InputError(root.where("mechanical"), "without a mechanical model the phases have no durations",
+                         "add duration_s = { takeoff = ..., cruise = ..., landing = ... }");
+    }
+    double total_s = 0.0;
+    const auto given = root.optional_table("duration_s", "{ cruise = 600 }");
+    for (const auto phase : all_phases) {
+        const auto name = to_string(phase);
+        if (given && (!mechanical || given->has(name))) {
+            mission.duration_s[phase] = read_duration(*given, name);
+            mission.duration_is_stated[phase] = true;
+        }
+        total_s += mission.duration_s[phase];
+    }
+    if (given) given->refuse_unknown_keys();
+    note_minutes(mission);
+    if (total_s == 0.0) throw InputError(root.where("duration_s"), "all phases take 0 s, expected a mission");
+}
+
+void read_mission_battery(const TomlTable& root, MissionSetup& mission) {
+    auto& battery = mission.battery;
+    battery = root.is_table("battery") ? battery::battery_from(root.table("battery"))
+                                       : battery::read_battery(named_file(root, "battery"));
+    const auto capacity_ah = optional_number_in(between(min_capacity_ah_of_a_pack, battery::max_capacity_ah), root,
+                                                "capacity_ah", battery::capacity_hint);
+    mission.capacity_is_stated = capacity_ah.has_value();
+    if (!capacity_ah && battery.capacity_ah < min_capacity_ah_of_a_pack)
+        throw InputError(root.where("battery"), fmt::format("the battery holds {:.3g} Ah", battery.capacity_ah),
+                         fmt::format("expected {} Ah or more", min_capacity_ah_of_a_pack));
+    if (!capacity_ah) return;
+    battery.capacity_ah = *capacity_ah;
+    battery.intervals.capacity_ah.reset();  // that was of the other capacity
+}
+
+/// A pack whose voltage when full is not that of the model's flights, whose packs were about full at the start.
+void note_other_cells(MissionSetup& mission) {
+    constexpr double least_part = 0.85;  // a nominal voltage, or a pack of one cell less
+    constexpr double most_times = 1.2;   // flights that begin with 3.5 V a cell
+    if (!mission.mechanical || !mission.mechanical->pack_voltage_v) return;
+    const double flown_v = *mission.mechanical->pack_voltage_v;
+    const double full_v = open_circuit_voltage_v(mission.battery, units::percent_per_whole);
+    if (full_v >= least_part * flown_v && full_v <= most_times * flown_v) return;
+    mission.notes.push_back(
+        fmt::format("the pack has {:.1f} V when full, and the model's flights were flown with up to "
+                    "{:.1f} V: has it another number of cells?",
+                    full_v, flown_v));
+}
+
+compute::Component read_component(const TomlTable& table, const std::string& name) {
+    table.refuse_keys_except({"profile", "parameters", "columns", "utility"});
+    compute::ProfileNaming naming;
+    naming.where = table.where();
+    for (const std::string_view key : {"parameters", "columns"}) {
+        if (!table.has(key)) continue;
+        (key == "columns" ? naming.columns : naming.parameters) = table.strings(key);
+        naming.where = table.where(key);
+        if (naming.parameters.empty() && naming.columns.empty())
+            throw InputError(naming.where, fmt::format("{} = [] names nothing", key), "leave it out");
+    }
+    return {name, read_power_profile(named_file(table, "profile"), naming)};
+}
+
+/// Adds a note where a profile is above the idle computer and no other component draws what that does.
+void note_missing_idle(const std::vector<double>& excluded_idle_w, MissionSetup& mission) {
+    constexpr double least_of_idle = 0.5;  // idle power differs less between days
+    const auto above = std::ranges::max_element(excluded_idle_w);
+    if (above == excluded_idle_w.end() || *above <= 0.0) return;
+    double others_w = 0.0;
+    for (std::size_t i = 0; i < excluded_idle_w.size(); ++i)
+        if (excluded_idle_w[i] <= 0.0) others_w += std::ranges::min(mission.compute.components[i].profile.power_w);
+    if (others_w >= least_of_idle * *above) return;
+    mission.notes.push_back(fmt::format(
+        "the profile of {} is above the idle computer, whose {:.3g} W no component draws: add the idle.csv of "
+        "its folder as a component, and run it",
+        mission.compute.components[static_cast<std::size_t>(above - excluded_idle_w.begin())].name, *above));
+}
+
+void read_components(const TomlTable& root, MissionSetup& mission) {
+    const auto components = root.optional_table("components");
+    if (!components) return;
+    std::vector<double> excluded_w;
+    for (const auto& name : components->keys()) {
+        const auto table = components->table(name);
+        mission.compute.components.push_back(read_component(table, name));
+        excluded_w.push_back(compute::excluded_idle_w(named_file(table, "profile")));
+        std::optional<Utility> utility;
+        if (const auto stated = table.optional_table("utility"))
+            utility = read_utility(*stated, mission.compute.components.back().profile);
+        mission.utilities.push_back(std::move(utility));
+    }
+    note_missing_idle(excluded_w, mission);
+}
+
+std::optional<double> optional_sd_percent(const TomlTable& table, std::string_view key) {
+    return optional_number_in(between(0.0, largest_sd_percent), table, key);
+}
+
+PerPhase<std::optional<double>> read_phases(const TomlTable& uncertainty, std::string_view key, double largest) {
+    PerPhase<std::optional<double>> phases;
+    const auto table = uncertainty.optional_table(key);
+    if (!table) return phases;
+    for (const auto phase : all_phases)
+        phases[phase] = optional_number_in(between(0.0, largest), *table, to_string(phase));
+    table->refuse_unknown_keys();
+    return phases;
+}
+
+Uncertainty read_uncertainty(const TomlTable& mission, const compute::ComputeModel& compute, bool has_mechanical) {
+    Uncertainty read;
+    read.compute_sd_percent.resize(compute.components.size());
+    const auto table = mission.optional_table("uncertainty");
+    if (!table) return read;
+    table->refuse_keys_except(
+        {"level_sd_percent", "duration_sd_s", "compute_sd_percent", "capacity_sd_percent", "initial_soc_sd_percent"});
+    if (table->has("level_sd_percent") && !has_mechanical) {
+        throw InputError(table->where("level_sd_percent"), "level_sd_percent has no meaning with mechanical = \"none\"",
+                         "leave it out");
+    }
+    read.level_sd_percent = read_phases(*table, "level_sd_percent", largest_sd_percent);
+    read.duration_sd_s = read_phases(*table, "duration_sd_s", max_phase_s);
+    read.capacity_sd_percent = optional_sd_percent(*table, "capacity_sd_percent");
+    read.initial_soc_sd_percent = number_in_or(between(0.0, 100.0), *table, "initial_soc_sd_percent", 0.0);
+    if (const auto components = table->optional_table("compute_sd_percent")) {
+        for (std::size_t i = 0; i < compute.components.size(); ++i)
+            read.compute_sd_percent[i] = optional_sd_percent(*components, compute.components[i].name);
+        components->refuse_unknown_keys();
+    }
+    return read;
+}
+
+/// Throws where a mission that is yet to be planned is not accepted.
+void require_schedule(const TomlTable& root, bool lacks_schedule) {
+    if (lacks_schedule && !root.has("plan")) {
+        throw InputError(root.where("components"), "there are components and no [[schedule]] that runs them",
+                         "add [[schedule]] with otherwise = true and run = { ... }, or make a schedule with "
+                         "`flightwatt plan`");
+    }
+    if (!root.has("plan")) return;
+    throw InputError(root.where("plan"), "this mission has no complete schedule: it is yet to be planned",
+                     "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
+}
+
+/// The mission with its schedule, or the planning problem with the fixed part of it. A complete schedule, such as the
+/// result of flightwatt plan, is scaled in time to a cruise of another duration than `stated_s`.
+MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading,
+                                  const PerPhase<double>& stated_s, MissionSetup setup) {
+    auto adaptive = read_adaptive_policy(root);
+    const auto has_otherwise = [](const TomlTable& entry) { return entry.has("otherwise"); };
+    const bool is_stretched = reading.cruise_s && stated_s[Phase::cruise] > 0.0 && !adaptive && !root.has("plan") &&
+                              std::ranges::none_of(root.tables("schedule"), has_otherwise);
+    const auto& entries_s = is_stretched ? stated_s : setup.duration_s;
+    auto entries = read_schedule(root, setup.compute, entries_s);
+    const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
+    if (!reading.allow_unplanned && !adaptive && !setup.packs) require_schedule(root, lacks_schedule);
+    if (lacks_schedule || root.has("plan") || adaptive) {
+        PlanningProblem problem{std::move(setup), {}, {}, adaptive};
+        problem.plan = read_plan_settings(root, problem.setup.compute);
+        problem.fixed = resolve_fixed_segments(entries, problem.setup.duration_s);
+        if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)
+            problem.adaptive->decide_every_s = problem.plan.slot_s;
+        return problem;
+    }
+    if (entries.empty()) {
+        ScheduleEntry nothing;  // mechanical only: nothing runs, all the time
+        nothing.otherwise = true;
+        nothing.where = root.where();
+        entries.push_back(nothing);
+    }
+    auto schedule = resolve_schedule(entries, entries_s);
+    if (is_stretched) schedule = rescale_to_flown_durations(std::move(schedule), stated_s, setup.duration_s);
+    return Mission{std::move(setup), std::move(schedule)};
+}
+
+MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& path,
+                            const MissionReadOptions& reading) {
+    if (root.is_table("conditions"))
+        throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
+                         "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
+                         "flightwatt fit --model-kind physical");
+    root.refuse_keys_except(
+        {"format",   "name",       "mechanical",      "duration_s",          "phase_clock", "airspeed_m_per_s",
+         "path",     "wind",       "battery",         "initial_soc_percent", "capacity_ah", "cutoff_voltage_v",
+         "packs",    "payload_kg", "takeoff_mass_kg", "reserve_soc_percent", "may_charge",  "components",
+         "schedule", "plan",       "policy",          "uncertainty"});
+    require_known_format(root);
+    MissionSetup mission;
+    mission.file = path.string();
+    mission.name = root.optional_string("name").value_or(path.stem().string());
+    mission.mechanical = read_mechanical(root);
+    mission.phase_clock = read_clock(root, mission.mechanical.has_value());
+    mission.packs = read_packs(root);
+    apply_payload(root, mission);
+    if (!root.has("path")) apply_airspeed(root, mission);
+    read_durations(root, mission);
+    read_cruise_path(root, reading, mission);
+    find_power_model(root, mission);
+    const auto stated_s = mission.duration_s;
+    if (reading.cruise_s) {
+        mission.duration_s[Phase::cruise] = *reading.cruise_s;
+        mission.duration_is_stated[Phase::cruise] = true;
+    }
+    read_mission_battery(root, mission);
+    note_other_cells(mission);
+    mission.may_charge = root.optional_boolean("may_charge").value_or(false);
+    read_components(root, mission);
+    mission.initial_soc_percent = optional_number_in(between(1.0, 100.0), root, "initial_soc_percent",
+                                                     "a full pack is 100; a charge of 0.98 is 98 %")
+                                      .value_or(100.0);
+    mission.cutoff_voltage_v = number_in_or(between(0.0, 1e6), root, "cutoff_voltage_v", 0.0);
+    mission.reserve_soc_percent = number_in_or(between(0.0, 100.0), root, "reserve_soc_percent", 0.0);
+    if (const double percent = mission.reserve_soc_percent; percent > 0.0 && percent < 1.0)
+        mission.notes.push_back(fmt::format("reserve_soc_percent = {} is {} % of the charge; are {:.3g} % meant?",
+                                            percent, percent, units::percentage(percent, 1.0)));
+    mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
+    return with_read_schedule(root, reading, stated_s, std::move(mission));
+}
+
+}  // namespace
+
+MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
+                             const MissionReadOptions& reading) {
+    const auto root = parse_toml(text, path.string(), FileKind::mission);
+    std::optional<MissionVariant> mission;
+    root.collect_unknown_keys([&] { mission = mission_from(root, path, reading); });
+    return std::move(*mission);
+}
+
+MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading) {
+    return parse_mission(read_file(path), path, reading);
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+namespace flightwatt::mission {
+
+/// Options of reading a mission.
+struct MissionReadOptions {
+    bool allow_unplanned = false;         ///< accepts a mission that is not planned yet
+    std::optional<double> cruise_s = {};  ///< duration of the cruise, instead of the file's
+    // Changes of a path: turns of its last circles; or distance along the legs after which it returns.
+    std::optional<double> circles = {};
+    std::optional<double> return_after_m = {};
+};
+
+}  // namespace flightwatt::mission

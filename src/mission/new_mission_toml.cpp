@@ -1,0 +1,163 @@
+#include "mission/new_mission_toml.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::mission {
+
+/// config/new_mission.toml.in, of which CMake makes a string.
+std::string_view new_mission_template();
+
+namespace {
+
+/// Replacement for each {{name}} of the template.
+using Values = std::map<std::string, std::string, std::less<>>;
+
+std::string fill_line(std::string_view line, const Values& values) {
+    std::string filled;
+    for (auto start = line.find("{{"); start != std::string_view::npos; start = line.find("{{")) {
+        const auto end = line.find("}}");
+        filled += line.substr(0, start);
+        filled += values.find(line.substr(start + 2, end - start - 2))->second;
+        line.remove_prefix(end + 2);
+    }
+    return filled.append(line);
+}
+
+/// The lines from {{#name}} to {{/}} are left out where the value is empty.
+std::string fill(std::string_view text, const Values& values) {
+    std::string filled;
+    bool is_left_out = false;
+    while (!text.empty()) {
+        const auto line = text.substr(0, text.find('\n') + 1);
+        text.remove_prefix(line.size());
+        if (line.starts_with("{{#"))
+            is_left_out = values.find(line.substr(3, line.find('}') - 3))->second.empty();
+        else if (line.starts_with("{{/"))
+            is_left_out = false;
+        else if (!is_left_out)
+            filled += fill_line(line, values);
+    }
+    return filled;
+}
+
+std::string if_so(bool condition, const char* text = "yes") { return condition ? text : ""; }
+
+std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
+
+void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
+    for (const auto phase : all_phases)
+        values[std::string(to_string(phase)) + "_s"] = fmt::format("{:.0f}", model.phases[phase].duration_s);
+    // Stated where the physical model makes the cruise's power of it.
+    const bool is_physical = model.physical && model.physical->mean_airspeed_m_per_s > 0.0;
+    values["physical"] = if_so(is_physical);
+    values["not_physical"] = if_so(!is_physical);
+    double airspeed_m_per_s = 13.0;  // of a small wing
+    if (is_physical)
+        airspeed_m_per_s = model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
+    values["airspeed"] = fmt::format("{:.1f}", airspeed_m_per_s);
+}
+
+/// As in the battery file; else estimated from the voltage of a full pack, or from the constant one, of LiPo cells.
+int cells_of(const battery::Battery& pack) {
+    constexpr double full_v = 4.2;
+    constexpr double nominal_v = 3.7;
+    if (pack.cells) return *pack.cells;
+    const double cells =
+        pack.thevenin ? pack.thevenin->open_circuit.voltage_v.back() / full_v : pack.voltage_v / nominal_v;
+    return std::max(1, static_cast<int>(std::lround(cells)));
+}
+
+void add_battery(const battery::Battery& pack, Values& values) {
+    constexpr double min_v_per_cell = 3.0;
+    const int cells = cells_of(pack);
+    values["capacity_ah"] = fmt::format("{:.3g}", pack.capacity_ah);
+    values["cells_note"] = cells == 1 ? "" : fmt::format(", and this pack has about {}", cells);
+    values["cutoff_voltage_v"] = fmt::format("{:.1f}", min_v_per_cell * cells);
+}
+
+/// "{ detection = { fps = 10 } }": of each parameter what `value` makes of the values that it was profiled at.
+template <typename ValueOf>
+std::vector<std::string> parameters_of(const std::vector<NewComponent>& components, const ValueOf& value) {
+    std::vector<std::string> tables;
+    for (const auto& [name, profile, power] : components) {
+        std::vector<std::string> pairs;
+        for (std::size_t i = 0; i < power.parameters.size(); ++i)
+            pairs.push_back(fmt::format("{} = {}", toml_key(power.parameters[i]), value(power.axes[i])));
+        tables.push_back(toml_key(name) + " = " + toml_inline_table(pairs));
+    }
+    return tables;
+}
+
+/// A key that may have a note behind it, on its line only if both fit.
+void add_noted_key(const std::string& name, const std::string& key, std::string_view note, Values& values) {
+    constexpr std::size_t max_line = 110;
+    values[name] = key;
+    values[name + "_note"] = key.size() + note.size() < max_line ? fmt::format("    {}", note) : "";
+}
+
+void add_schedule(const NewMission& mission, Values& values) {
+    const auto& components = mission.components;
+    values["components"] = if_so(!components.empty());
+    values["no_components"] = if_so(components.empty());
+    values["planned"] = if_so(!components.empty() && mission.is_planned);
+    values["scheduled"] = if_so(!components.empty() && !mission.is_planned);
+    if (components.empty()) return;
+    values["first_component"] = toml_key(components.front().name);
+    values["run"] =
+        toml_inline_table(parameters_of(components, [](const auto& axis) { return axis[(axis.size() - 1) / 2]; }));
+    auto levels = parameters_of(components, list_of);
+    std::erase_if(levels, [](const auto& table) { return table.ends_with("= {}"); });
+    add_noted_key("may_be_off", fmt::format("may_be_off = [{}]", toml_string(components.front().name)),
+                  "# components that may be switched off", values);
+    add_noted_key("levels", "levels = " + toml_inline_table(levels),
+                  "# the values to choose from, instead of all that were profiled", values);
+}
+
+std::string component_text(std::string_view text, const NewComponent& component, Values values) {
+    const auto& power = component.power;
+    std::vector<std::string> names;
+    names.reserve(power.parameters.size() + 1);
+    for (const auto& parameter : power.parameters) names.push_back(toml_string(parameter));
+    values["component"] = toml_key(component.name);
+    values["profile"] = toml_string(component.profile);
+    values["parameters"] = fmt::format("{}", fmt::join(names, ", "));
+    values["by_parameter"] = names.empty() ? "" : fmt::format("parameter = {}, ", names.front());
+    values["shape"] = if_so(!names.empty(), ", shape = \"sqrt\"");
+    values["instead"] = if_so(!values["planned"].empty(), "# (instead of the line above)\n");
+    values["points_qos"] = names.empty() || power.axes.front().size() < 2
+                               ? ""
+                               : list_of({power.axes.front().front(), power.axes.front().back()});
+    names.push_back("\"power_w\"");
+    values["columns"] = fmt::format("{}", fmt::join(names, ", "));
+    return fill(text, values);
+}
+
+}  // namespace
+
+std::string new_mission_toml(const NewMission& mission) {
+    constexpr std::string_view each = "{{each component}}\n";
+    constexpr std::string_view end_of_each = "{{end component}}\n";
+    Values values{{"name", toml_string(mission.name)},
+                  {"mechanical", toml_string(mission.mechanical)},
+                  {"battery", toml_string(mission.battery)}};
+    add_aircraft(mission.model, values);
+    add_battery(mission.pack, values);
+    add_schedule(mission, values);
+    const auto text = new_mission_template();
+    const auto start = text.find(each);
+    const auto end = text.find(end_of_each);
+    auto filled = fill(text.substr(0, start), values);
+    for (const auto& component : mission.components)
+        filled += component_text(text.substr(start + each.size(), end - start - each.size()), component, values);
+    return filled + fill(text.substr(end + end_of_each.size()), values);
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,166 @@
+#include "mission/planned_mission_toml.h"
+
+#include "base/text.h"
+#include "base/toml_reader.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/split.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+namespace flightwatt::mission {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+char first_character(const std::string& line) {
+    const auto at = line.find_first_not_of(" \t\r");
+    return at == std::string::npos ? '\0' : line[at];
+}
+
+bool is_header(const std::string& line) { return first_character(line) == '['; }
+bool is_comment(const std::string& line) { return first_character(line) == '#'; }
+bool is_blank(const std::string& line) { return first_character(line) == '\0'; }
+
+/// Erases the section that begins with a header, and the comments directly above it; those behind its keys stay.
+Lines::iterator erase_section(Lines& lines, Lines::iterator header) {
+    const auto next = std::find_if(header + 1, lines.end(), is_header);
+    auto end = next;
+    while (end > header + 1 && (is_blank(*(end - 1)) || is_comment(*(end - 1)))) --end;
+    end = std::find_if_not(end, next, is_blank);
+    while (header > lines.begin() && is_comment(*(header - 1))) --header;
+    return lines.erase(header, end);
+}
+
+/// Removes plan, policy and schedule.
+void erase_schedule(Lines& lines) {
+    static const std::regex of_header(R"(^\s*\[\[?\s*(plan|policy|schedule)\s*(\.|\]).*)");
+    static const std::regex of_key(R"(^\s*(plan|policy|schedule)\s*(\.|=).*)");
+    for (auto at = lines.begin(); at != lines.end();)
+        at = std::regex_match(*at, of_header) ? erase_section(lines, at) : at + 1;
+    const auto root_end = std::ranges::find_if(lines, is_header);
+    lines.erase(
+        std::remove_if(lines.begin(), root_end, [&](const auto& line) { return std::regex_match(line, of_key); }),
+        root_end);
+}
+
+/// A file name that changes.
+struct RenamedFile {
+    std::string read;
+    std::string wanted;
+};
+
+/// Without a byte order mark, and with the line ends of Unix.
+std::string normalise_text(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    return boost::algorithm::replace_all_copy(std::string(text), "\r\n", "\n");
+}
+
+/// Edits `text` to the content `wanted`, and keeps comments, order and spelling of the rest: removes plan, policy and
+/// schedule, renames files, adds the format. The result is parsed again; std::nullopt if its content is not `wanted`.
+std::optional<std::string> edit_keeping_comments(const std::string& text, const std::vector<RenamedFile>& renamed,
+                                                 const toml::table& wanted) {
+    Lines lines;
+    boost::algorithm::split(lines, text, [](char c) { return c == '\n'; });
+    erase_schedule(lines);
+    while (!lines.empty() && lines.back().empty()) lines.pop_back();
+    auto kept = fmt::format("{}\n", fmt::join(lines, "\n"));
+    for (const auto& [read, name] : renamed)
+        for (const char quote : {'"', '\''})
+            boost::algorithm::replace_all(kept, quote + read + quote, toml_string(name));
+    try {
+        if (!toml::parse(kept).contains("format")) {
+            std::size_t at = 0;  // below the comments that the file begins with
+            while (at < kept.size() && kept[at] == '#') at = kept.find('\n', at) + 1;
+            kept.insert(at, format_line());
+        }
+        if (toml::parse(kept) == wanted) return kept;
+    } catch (const toml::parse_error&) {
+        // a section in an unexpected notation
+    }
+    return std::nullopt;
+}
+
+/// Unchanged if the working folder does not exist any more.
+std::filesystem::path absolute_path(const std::filesystem::path& path) {
+    std::error_code error;
+    auto absolute = std::filesystem::absolute(path, error);
+    return error ? path : absolute;
+}
+
+/// Rewrites the file name that a key of `table` holds, if it does.
+void move_path(toml::table& table, std::string_view key, const std::filesystem::path& from,
+               const std::filesystem::path& to, std::vector<RenamedFile>& renamed) {
+    auto* value = table.get_as<std::string>(key);
+    if (value == nullptr || (key == "mechanical" && value->get() == "none")) return;
+    const std::filesystem::path named = value->get();
+    if (named.is_absolute()) return;
+    std::error_code error;
+    const auto near = std::filesystem::proximate(from / named, to, error);
+    renamed.push_back({value->get(), (error ? from / named : near).generic_string()});
+    *value = renamed.back().wanted;
+}
+
+std::string run_text(const compute::ComputeModel& compute, const compute::Configuration& run) {
+    std::vector<std::string> components;
+    for (const auto& running : run) {
+        const auto& component = compute.components.at(running.component);
+        std::vector<std::string> qos;
+        for (std::size_t i = 0; i < running.qos.size(); ++i)
+            qos.push_back(toml_key(component.profile.parameters[i]) + " = " + toml_real(running.qos[i]));
+        components.push_back(toml_key(component.name) + " = " + toml_inline_table(qos));
+    }
+    return toml_inline_table(components);
+}
+
+std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule) {
+    std::string text;
+    for (const auto& segment : schedule) {
+        text += fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\nto = {}\nrun = {}\n",
+                            toml_string(to_string(segment.phase)), toml_real(segment.start_s), toml_real(segment.end_s),
+                            run_text(compute, segment.run));
+    }
+    return text;
+}
+
+}  // namespace
+
+PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
+                                        const compute::ComputeModel& compute, const Schedule& schedule,
+                                        const std::filesystem::path& folder) {
+    const auto plain = normalise_text(text);
+    auto root = toml::parse(plain, path.string());
+    root.insert_or_assign("format", format_version);
+    root.erase("plan");
+    root.erase("schedule");
+    root.erase("policy");  // the schedule is decided
+    const auto from = absolute_path(path).parent_path();
+    const auto to = absolute_path(folder);
+    std::vector<RenamedFile> renamed;
+    for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to, renamed);
+    if (auto* components = root.get_as<toml::table>("components")) {
+        for (auto&& [name, component] : *components)
+            if (auto* table = component.as_table()) move_path(*table, "profile", from, to, renamed);
+    }
+    if (auto* cruise = root.get_as<toml::table>("path"))
+        for (const std::string_view key : {"waypoints", "flight_plan", "area"})
+            move_path(*cruise, key, from, to, renamed);
+    const auto schedule_below = schedule_text(compute, schedule);
+    if (const auto kept = edit_keeping_comments(plain, renamed, root)) return {*kept + schedule_below, false};
+    std::ostringstream out;
+    out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
+    return {out.str() + "\n" + schedule_below, plain.find('#') != std::string::npos};
+}
+
+}  // namespace flightwatt::mission

@@ -1,0 +1,73 @@
+#include "path/area.h"
+
+#include "base/number.h"
+#include "path/plan_blocks.h"
+#include "path/plans/flight_plan.h"
+#include "path/plans/json_text.h"
+#include "path/plans/patterns.h"
+#include "path/plans/plan_expressions.h"
+#include "path/waypoint_files.h"
+
+#include <cmath>
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+namespace flightwatt::path {
+namespace {
+
+constexpr const char* one_polygon = "expected one polygon, in GeoJSON or KML";
+
+/// "longitude,latitude[,altitude] ..." of <outerBoundaryIs>.
+Outline kml_outline(std::string_view text, const std::string& file) {
+    pugi::xml_document document;
+    if (const auto parsed = document.load_buffer(text.data(), text.size()); !parsed)
+        throw InputError({file}, fmt::format("is not XML: {}", parsed.description()), one_polygon);
+    const auto outlines = document.select_nodes("//outerBoundaryIs");
+    if (outlines.size() != 1) throw InputError({file}, fmt::format("has {} polygons", outlines.size()), one_polygon);
+    Outline outline;
+    outline.has_holes = !document.select_nodes("//innerBoundaryIs").empty();
+    const std::string corners = outlines.first().node().child("LinearRing").child("coordinates").text().get();
+    for (const auto& corner : split(corners, " \t\r\n")) {
+        const auto parts = split(corner, ",");
+        const auto longitude = parse_number(parts.empty() ? "" : parts[0]);
+        const auto latitude = parse_number(parts.size() < 2 ? "" : parts[1]);
+        if (!longitude || !latitude || std::abs(*latitude) > 90.0 || std::abs(*longitude) > 180.0)
+            throw InputError({file}, fmt::format("a corner '{}'", truncated(corner)),
+                             "expected longitude,latitude in degrees");
+        outline.corners.push_back({*latitude, *longitude});
+    }
+    return outline;
+}
+
+}  // namespace
+
+PlanEntries parse_area(std::string_view text, const std::string& file, double spacing_m, double heading_deg) {
+    const auto outline =
+        plan_format(text) == PlanFormat::flight_plan ? kml_outline(text, file) : geojson_outline(text, file);
+    if (outline.corners.size() < 3)
+        throw InputError({file}, fmt::format("its polygon has {} corners", outline.corners.size()), one_polygon);
+    const auto& origin = outline.corners.front();
+    std::vector<LocalPosition> corners;
+    for (const auto& corner : outline.corners) corners.push_back(to_local(corner, origin));
+    PathEntry like;
+    like.name = "the survey of the area";
+    like.where = {file};
+    PlanEntries survey;
+    survey.starts_at_first_place = true;
+    if (outline.has_holes) survey.not_flown.emplace_back("the holes of the area are flown over");
+    PatternWriter{like, survey.entries}.survey(survey_lines(corners, spacing_m, heading_deg, {file}), spacing_m,
+                                               corners.front());
+    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
+    for (auto& entry : survey.entries) {
+        if (!entry.place) continue;
+        double above_m = 0.0;
+        auto& place = entry.geographic.emplace();
+        plane.Reverse(entry.place->east_m, entry.place->north_m, 0.0, place.latitude_deg, place.longitude_deg, above_m);
+        entry.place.reset();
+    }
+    return survey;
+}
+
+}  // namespace flightwatt::path

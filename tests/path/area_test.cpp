@@ -1,0 +1,67 @@
+#include "path/area.h"
+
+#include "helpers/rejected.h"
+#include "path/plan_files.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::path {
+namespace {
+
+using test::rejected;
+
+/// About 400 m x 400 m.
+constexpr const char* ring = "[[8.0,47.0],[8.00526,47.0],[8.00526,47.0036],[8.0,47.0036],[8.0,47.0]]";
+
+std::string geojson(const std::string& rings) {
+    return fmt::format(
+        R"({{"type":"FeatureCollection","features":[{{"type":"Feature","geometry":{{"type":"Polygon","coordinates":[{}]}}}}]}})",
+        rings);
+}
+
+double length_m(const PlanEntries& survey) {
+    PathDefaults defaults;
+    defaults.starts_at_first_place = survey.starts_at_first_place;
+    const auto path = build_path(survey.entries, defaults);
+    double length_m = length_of_legs_m(path);
+    for (const auto& element : path.elements)
+        if (const auto* turn = std::get_if<Circles>(&element.shape))
+            length_m += 2.0 * std::numbers::pi * turn->radius_m * turn->turns;
+    return length_m;
+}
+
+TEST(Areas, AreCoveredByLines) {
+    const auto area = parse_area(geojson(ring), "a.geojson", 50.0, 0.0);
+    EXPECT_NEAR(length_m(area), 8.0 * 400.0 + 7.0 * 78.54, 15.0);
+    EXPECT_NEAR(length_m(parse_area(geojson(ring), "a.geojson", 50.0, 90.0)), length_m(area), 15.0);
+    EXPECT_TRUE(area.not_flown.empty());
+    const auto kml = R"(<kml><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>
+8.0,47.0,0 8.00526,47.0,0 8.00526,47.0036,0 8.0,47.0036,0 8.0,47.0,0
+</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>)";
+    EXPECT_NEAR(length_m(parse_area(kml, "a.kml", 50.0, 0.0)), length_m(area), 1e-6);
+    EXPECT_EQ(parse_area(geojson(fmt::format("{0},{0}", ring)), "a", 50.0, 0.0).not_flown,
+              std::vector<std::string>{"the holes of the area are flown over"});
+}
+
+TEST(Areas, AreOnePolygon) {
+    const auto refusal = [](const std::string& text, double spacing_m = 50.0) {
+        return rejected([&] { parse_area(text, "a", spacing_m, 0.0); });
+    };
+    EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[1,2]})"),
+              "a: is a Point, which is no area; expected GeoJSON: one Polygon, alone, as feature or in a "
+              "FeatureCollection");
+    EXPECT_EQ(refusal(geojson("")).substr(0, 32), "a: feature 1 has no outer ring; ");
+    EXPECT_EQ(refusal(geojson("[[8,47],[8.1,47]]")).substr(0, 29), "a: its polygon has 2 corners;");
+    EXPECT_EQ(refusal("<kml/>"), "a: has 0 polygons; expected one polygon, in GeoJSON or KML");
+    EXPECT_EQ(refusal("<kml><outerBoundaryIs><LinearRing><coordinates>8,x</coordinates></LinearRing>"
+                      "</outerBoundaryIs></kml>"),
+              "a: a corner '8,x'; expected longitude,latitude in degrees");
+    EXPECT_NE(refusal(geojson(ring), 5000.0).find("no lines 5000 m apart"), std::string::npos);
+    EXPECT_NE(refusal(geojson(ring), 1e-9).find("or more than 5000"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt::path
