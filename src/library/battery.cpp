@@ -20,7 +20,7 @@ Pack identify_pack(const std::vector<Log>& logs, const PackLabel& label) {
         const auto& loaded = log.loaded();
         if (!loaded.exclusion.empty()) throw InputError({log.name()}, loaded.exclusion);
         const bool has_circuits = loaded.data.circuits.size() > 1;
-        auto found = battery::discharge_records(has_circuits ? of_circuit(loaded.data, 1) : loaded.data);
+        auto found = battery::discharge_records(has_circuits ? select_circuit(loaded.data, 1) : loaded.data);
         std::ranges::move(found.records, std::back_inserter(records));
     }
     const auto identified =

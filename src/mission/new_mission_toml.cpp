@@ -1,6 +1,7 @@
 #include "mission/new_mission_toml.h"
 
 #include "base/text.h"
+#include "mission/mission.h"
 
 #include <algorithm>
 #include <cmath>
