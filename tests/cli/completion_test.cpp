@@ -101,13 +101,13 @@ TEST_P(Shell, OffersStagesToHelp) { EXPECT_THAT(offered("flightwatt help "), Con
 INSTANTIATE_TEST_SUITE_P(Completion, Shell, testing::Values("bash", "fish", "zsh"),
                          [](const auto& param) { return std::string(param.param); });
 
-/// The pages, made anew.
+/// Makes the pages again.
 class ManPages : public testing::Test {
   protected:
     std::filesystem::path folder = test::scratch_dir();
 
     void SetUp() override {
-        const auto made = test::run_shell(test::shell_quoted(test::source_dir() / "scripts" / "make_man") +
+        const auto made = test::run_shell(test::shell_quoted(test::source_dir() / "cmake" / "make_man") +
                                               " --programs " + test::shell_quoted(test::programs_dir()) + " --into " +
                                               test::shell_quoted(folder / "man"),
                                           folder);
