@@ -26,6 +26,7 @@ Model fit_model(const std::vector<Log>& logs) {
     for (const auto& log : logs)
         for (auto& flight : mechanical::extract_flights(log.loaded()).flights) measured.push_back(std::move(flight));
     std::vector<mechanical::FlightSamples> samples;
+    samples.reserve(measured.size());
     for (const auto& flight : measured) samples.push_back(flight.samples);
     const mechanical::ModelFitOptions options;
     auto model = mechanical::fit_model(samples, options).model;

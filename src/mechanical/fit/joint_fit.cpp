@@ -57,8 +57,9 @@ class ProjectedResiduals : public ceres::CostFunction {
         if (jacobians == nullptr || jacobians[0] == nullptr) return true;
         const Eigen::VectorXd coefficients = qr.solve(power_w);
         Eigen::VectorXd by_angle = Eigen::VectorXd::Zero(basis.rows());
-        for (int n = 1; n <= order_; ++n)
-            by_angle += n * (coefficients[2 * n] * basis.col(2 * n - 1) - coefficients[2 * n - 1] * basis.col(2 * n));
+        for (Eigen::Index n = 1; n <= order_; ++n)
+            by_angle += static_cast<double>(n) *
+                        (coefficients[2 * n] * basis.col(2 * n - 1) - coefficients[2 * n - 1] * basis.col(2 * n));
         Eigen::Map<Eigen::VectorXd>(jacobians[0], basis.rows()) =
             outside_basis(by_angle.cwiseProduct(as_vector(samples_.tau)));
         return true;
