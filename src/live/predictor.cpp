@@ -1,5 +1,3 @@
-#include <flightwatt/predictor.h>
-
 #include "base/error.h"
 #include "battery/battery_toml.h"
 #include "live/live_flight.h"
@@ -16,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <flightwatt/predictor.h>
 #include <fmt/format.h>
 
 namespace flightwatt::live {

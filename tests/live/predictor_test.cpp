@@ -1,5 +1,3 @@
-#include <flightwatt/predictor.h>
-
 #include "base/atomic_file.h"
 #include "battery/battery_toml.h"
 #include "helpers/sample_logs.h"
@@ -20,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include <flightwatt/predictor.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
