@@ -29,6 +29,7 @@ struct Circuit {
     Track voltage_v = {};  ///< of the pack with the most power
     Track current_a = {};
     Track charge_ah = {};
+    std::optional<double> stated_capacity_ah = {};  ///< of its packs together, if the log's parameters state each
 };
 
 /// One flight's log with the track that is used for each quantity: what all steps after the selection read. Made by
@@ -67,6 +68,8 @@ struct FlightData : FlightInfo {
     ChosenTrack fix;  ///< 1: the position has a 3D fix
     ChosenTrack ground_altitude_m;
     ChosenTrack payload_kg;
+
+    std::optional<double> stated_capacity_ah;  ///< of the packs of the first circuit, by the log's parameters
 
     std::vector<Circuit> circuits;  ///< those of a log that numbers its batteries, the one with the most energy first
     std::vector<Track> other_altitudes;                        ///< candidates of the altitude that were not chosen

@@ -102,6 +102,8 @@ struct FlightInfo {
     std::map<int, std::string> block_names;  ///< names of the values of the track "block"
     /// Kinds of battery monitors by the log's parameters, by id: sum_monitor or escs_monitor.
     std::map<std::string, std::string> monitor_kinds;
+    /// Capacities of the monitors' packs by the log's parameters (BATT_CAPACITY, BAT1_CAPACITY), by id [Ah].
+    std::map<std::string, double> monitor_capacities_ah;
     bool log_is_missing = false;  ///< the log has no .log
 
     std::vector<telemetry::AssumedDefinition> assumed_definitions;

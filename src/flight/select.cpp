@@ -58,6 +58,7 @@ void choose_batteries(const FlightSeries& series, BatteryTracks found, FlightDat
     data.voltage_v = {data.circuits.front().voltage_v};
     data.current_a = {data.circuits.front().current_a};
     data.charge_ah = {data.circuits.front().charge_ah};
+    data.stated_capacity_ah = data.circuits.front().stated_capacity_ah;
 }
 
 /// The pack's current, else the sum of the consumers' currents; no voltage of consumers with different ones.
@@ -75,6 +76,8 @@ void choose_voltage_and_current(const FlightSeries& series, FlightData& data) {
     }
     data.charge_ah = first_that_varies(series, "charge_ah");
     data.energy_wh = first_that_varies(series, "energy_wh");
+    if (series.monitor_capacities_ah.size() == 1)
+        data.stated_capacity_ah = series.monitor_capacities_ah.begin()->second;
 }
 
 /// A column of power in a user's CSV goes before its batteries.

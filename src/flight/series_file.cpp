@@ -102,6 +102,8 @@ FrontMatter read_matter(const TomlTable& table) {
     if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
     if (const auto kinds = table.optional_table("monitor_kinds"))
         for (const auto& id : kinds->keys()) series.monitor_kinds[id] = kinds->string(id);
+    if (const auto capacities = table.optional_table("monitor_capacities_ah"))
+        for (const auto& id : capacities->keys()) series.monitor_capacities_ah[id] = capacities->number(id);
     for (const auto& assumed : table.tables("assumed_definition")) {
         series.assumed_definitions.push_back({assumed.string("text"), assumed.number("since_s")});
         assumed.refuse_unknown_keys();
@@ -169,6 +171,9 @@ std::string format_front_matter(const FlightSeries& series, const FileTracks& fi
     }
     if (!series.monitor_kinds.empty()) toml += "[monitor_kinds]\n";
     for (const auto& [id, kind] : series.monitor_kinds) toml += fmt::format("{} = {}\n", id, toml_string(kind));
+    if (!series.monitor_capacities_ah.empty()) toml += "[monitor_capacities_ah]\n";
+    for (const auto& [id, capacity_ah] : series.monitor_capacities_ah)
+        toml += fmt::format("{} = {}\n", id, toml_real(capacity_ah));
     for (const auto& assumed : series.assumed_definitions) {
         toml += fmt::format("[[assumed_definition]]\ntext = {}\nsince_s = {}\n", toml_string(assumed.text),
                             toml_real(assumed.since_s));

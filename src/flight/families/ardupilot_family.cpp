@@ -164,6 +164,7 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
     std::ranges::replace(series.aircraft_id, ' ', '-');
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
     series.monitor_kinds = monitor_kinds(log.facts.parameters);
+    series.monitor_capacities_ah = monitor_capacities_ah(log.facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
     const bool is_simulated =
         !found_in_texts(log.facts, "(SITL)").empty() ||
         std::ranges::any_of(log.messages, [](const auto& of) { return of.name == "SIM" || of.name == "SIM2"; });

@@ -122,6 +122,25 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
 
 }  // namespace
 
+std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
+                                                    const std::vector<std::string>& first, const std::string& others) {
+    constexpr int max_monitors = 9;
+    constexpr double mah_per_ah = 1000.0;
+    std::map<std::string, double> capacities_ah;
+    const auto add = [&](int number, const std::string& name) {
+        const auto found = parameters.find(name);
+        if (found != parameters.end() && found->second > 0.0)
+            capacities_ah.emplace(fmt::format("{}", number - 1), found->second / mah_per_ah);
+    };
+    for (const auto& name : first) add(1, name);
+    for (int number = 2; number <= max_monitors; ++number) {
+        auto name = others;
+        name.replace(name.find('N'), 1, std::to_string(number));
+        add(number, name);
+    }
+    return capacities_ah;
+}
+
 std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,
                                         const std::string& firmware, std::vector<Track>& tracks) {
     std::set<std::string> assumed;

@@ -4,6 +4,7 @@
 #include "telemetry/autopilot_log.h"
 
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -63,6 +64,12 @@ double product(const std::vector<double>& values);
 /// Returns a receiver's Unix time with 1024 weeks added while it is before 2010, when no such log was written:
 /// receivers whose counter of weeks overflowed are 20 or 39 years late. NaN for a time before the GPS epoch.
 double correct_week_rollover(double utc_s);
+
+/// Returns the capacities of battery monitors by their ids "0", "1" ... from parameters in mAh: of the first monitor
+/// by any of the names `first`, of the monitor N by `others`, in which "N" stands for the number [Ah]. Values that are
+/// not above 0 mean unknown.
+std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
+                                                    const std::vector<std::string>& first, const std::string& others);
 
 /// Adds the tracks of a sender's messages. Returns the units that are assumed: "BAT.Volt is read in V".
 std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,

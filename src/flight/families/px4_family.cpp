@@ -175,6 +175,8 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     else if (hitl != parameters.end() && hitl->second > 0.0)
         series.aircraft_name += " HITL";
     series.firmware = vehicle_kind(log);
+    series.monitor_capacities_ah =
+        monitor_capacities_ah(parameters, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY");
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ struct Monitor {
     double mean_w = 0.0;
     double mean_v = 0.0;
     double mean_a = 0.0;
-    std::string exclusion = {};  ///< why it is not counted; empty if it is
+    std::optional<double> stated_capacity_ah = {};  ///< see FlightInfo::monitor_capacities_ah
+    std::string exclusion = {};                     ///< why it is not counted; empty if it is
 
     std::string text() const { return fmt::format("{} ({:.2f} V, {:.2f} A)", name, mean_v, mean_a); }
 };
@@ -77,8 +78,11 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
                         track_of(series, power, "charge_ah"),
                         track_of(series, power, "energy_wh")};
         if (monitor.power_w.empty() || monitor.current_a.empty() || monitor.voltage_v.empty()) continue;
-        const auto kind = series.monitor_kinds.find(power.device.empty() ? "0" : power.device);
+        const auto id = power.device.empty() ? std::string("0") : power.device;
+        const auto kind = series.monitor_kinds.find(id);
         if (kind != series.monitor_kinds.end()) monitor.stated = kind->second;
+        const auto capacity = series.monitor_capacities_ah.find(id);
+        if (capacity != series.monitor_capacities_ah.end()) monitor.stated_capacity_ah = capacity->second;
         monitor.mean_w = mean(monitor.power_w.value);
         monitor.mean_v = mean(monitor.voltage_v.value);
         monitor.mean_a = mean(monitor.current_a.value);
@@ -202,6 +206,16 @@ Track counter_of(const std::vector<const Monitor*>& packs, Track Monitor::*membe
     return sum_of(devices_of(packs, member), unused);
 }
 
+/// The capacity of packs together; std::nullopt unless each is stated.
+std::optional<double> stated_capacity_ah(const std::vector<const Monitor*>& packs) {
+    double sum_ah = 0.0;
+    for (const auto* pack : packs) {
+        if (!pack->stated_capacity_ah) return std::nullopt;
+        sum_ah += *pack->stated_capacity_ah;
+    }
+    return sum_ah;
+}
+
 Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power) {
     ChosenTrack unused;
     Circuit circuit{names_of(packs),
@@ -209,7 +223,8 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
                     sum_of(devices_of(packs, &Monitor::power_w), power),
                     packs.front()->voltage_v,
                     sum_of(devices_of(packs, &Monitor::current_a), unused),
-                    counter_of(packs, &Monitor::charge_ah, power)};
+                    counter_of(packs, &Monitor::charge_ah, power),
+                    stated_capacity_ah(packs)};
     circuit.voltage_v.device.clear();
     if (!circuit.power_w.empty()) circuit.mean_power_w = mean(circuit.power_w.value);
     return circuit;

@@ -52,6 +52,15 @@ TEST(LogFamily, ReadsACopter) {
     EXPECT_THAT(series.notes, Contains("the log states no units: BAT.Curr is read in A, BAT.Volt is read in V"));
 }
 
+TEST(LogFamily, ReadsCapacitiesOfPacksFromParametersInMilliampereHours) {
+    using Capacities = std::map<std::string, double>;
+    const Capacities ardupilot{{"BATT_CAPACITY", 5200.0}, {"BATT2_CAPACITY", 2200.0}, {"BATT3_CAPACITY", 0.0}};
+    EXPECT_EQ(monitor_capacities_ah(ardupilot, {"BATT_CAPACITY"}, "BATTN_CAPACITY"),
+              (Capacities{{"0", 5.2}, {"1", 2.2}}));
+    const Capacities px4{{"BAT_CAPACITY", 4000.0}, {"BAT2_CAPACITY", -1.0}};
+    EXPECT_EQ(monitor_capacities_ah(px4, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY"), (Capacities{{"0", 4.0}}));
+}
+
 TEST(LogFamily, SeriesFileLosesNothing) {
     for (const auto& bytes : {test::dataflash_log(50), test::ulog_log(50)}) {
         auto series = series_of(bytes);

@@ -99,6 +99,16 @@ TEST(Circuits, LeaveOutAMonitorThatIsASumByItsParameter) {
     EXPECT_NEAR(first_w(series), 0.9 * 16.0, 1e-9);
 }
 
+TEST(Circuits, StateTheCapacityOfThePacksThatCountOnlyWhereEachIsStated) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.6)}});
+    series.monitor_capacities_ah["0"] = 5.0;
+    EXPECT_FALSE(select_tracks(series).stated_capacity_ah);
+    series.monitor_capacities_ah["1"] = 3.0;
+    EXPECT_NEAR(select_tracks(series).stated_capacity_ah.value(), 8.0, 1e-12);
+    series.monitor_kinds["0"] = sum_monitor;
+    EXPECT_NEAR(select_tracks(series).stated_capacity_ah.value(), 3.0, 1e-12);
+}
+
 TEST(Circuits, CountAPackThatTwoMonitorsSeeOnceAndSaySo) {
     const auto second = [](double part_of, double volts) {
         return series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", volts, times(part_of)}});
