@@ -158,6 +158,10 @@ struct MechanicalModel {
 /// The name of what predicts all phases: "fourier", "constant_mean", or "by_phase" where they differ.
 std::string default_model(const MechanicalModel& model);
 
+/// Whether a model has a physical part that predicted flights left out no worse than their mean power. Without a
+/// validation, one of several flights was asked for, and counts.
+bool motion_predicts_best(const MechanicalModel& model);
+
 /// The model with the power that predicts: a constant, the mean of equally weighted flights, in the phases whose
 /// decision is the mean.
 MechanicalModel with_decided_power(MechanicalModel model);

@@ -161,14 +161,19 @@ void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flig
     decide_power(model, flights, validated);
     model.is_rotorcraft = std::ranges::all_of(flights, [](const auto& flight) { return flight.motion.is_rotorcraft; });
     model.validation = validation_of(std::move(validated), model);
-    const auto is_physical = [](const auto& score) { return score.model == physical; };
-    if (model.physical || !model.validation || std::ranges::none_of(model.validation->scores, is_physical)) return;
+    if (model.physical) return;
     std::vector<BinnedFlight> motions(flights.size());
     std::ranges::transform(flights, motions.begin(), &MeasuredFlight::motion);
     try {
         model.physical = fit_physical_model(motions).model;
-    } catch (const NoResultError&) {  // it predicted some flights, and all of them together do not determine it
+    } catch (const NoResultError&) {  // no motion was measured, or it does not determine the power
     }
+}
+
+bool motion_predicts_best(const MechanicalModel& model) {
+    if (!model.physical || !model.validation) return model.physical && model.physical->flights.size() > 1;
+    const auto is_physical = [](const auto& score) { return score.model == physical; };
+    return std::ranges::any_of(model.validation->scores, is_physical);
 }
 
 }  // namespace flightwatt::mechanical

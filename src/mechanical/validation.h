@@ -89,8 +89,9 @@ std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flight
 std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> flights);
 
 /// Decides what predicts the phases of a fitted model, and adds its validation, and the physical model if it has none
-/// and that is not rejected. Of more than max_validation_folds flights that many are validated, evenly from all. A
-/// single flight, or folds that cannot be fitted, have no validation.
+/// and the flights determine it: it answers what another airspeed, wind or payload costs, also where the mean predicts
+/// plain flights as well. Of more than max_validation_folds flights that many are validated, evenly from all. A single
+/// flight, or folds that cannot be fitted, have no validation.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 

@@ -57,7 +57,7 @@ void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
     for (const auto phase : all_phases)
         values[std::string(to_string(phase)) + "_s"] = fmt::format("{:.0f}", model.phases[phase].duration_s);
     // Stated where the physical model makes the cruise's power of it.
-    const bool is_physical = model.physical && model.physical->mean_airspeed_m_per_s > 0.0;
+    const bool is_physical = motion_predicts_best(model) && model.physical->mean_airspeed_m_per_s > 0.0;
     values["physical"] = if_so(is_physical);
     values["not_physical"] = if_so(!is_physical);
     double airspeed_m_per_s = 13.0;  // of a small wing

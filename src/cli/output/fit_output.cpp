@@ -133,7 +133,7 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model) {
     for (const auto& warning : model_warnings(model)) warn(call, warning);
     append(*call.diagnostics, Severity::note, "fit of the curves", "", fit_notes(model));
-    if (model.validation) note(call, describe(*model.validation, model.physical.has_value()));
+    if (model.validation) note(call, describe(*model.validation, motion_predicts_best(model)));
 }
 
 Fields<FitOutput> record_fields(const FitOutput*) {
