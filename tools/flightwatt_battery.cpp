@@ -3,6 +3,7 @@
 #include "battery/battery_toml.h"
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
+#include "cli/output/discharge_input.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
@@ -34,41 +35,10 @@ battery::IdentificationOptions identification_options(const cli::StageCall& call
     return options;
 }
 
-/// The records that can be used. Each flight without one is named, with the reason.
-std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights,
-                                                   std::optional<std::size_t> circuit) {
-    flights.load.flight_required =
-        false;  // without altitude, power faults are not detected; the battery can be identified
-    std::vector<std::pair<std::string, Diagnostic>> refusals;  // by file
-    std::optional<InputError> refused;
-    const auto read = [&](const std::string& file, const flight::LoadedFlight& loaded) {
-        try {
-            if (!loaded.exclusion.empty()) throw InputError({file}, loaded.exclusion);
-            auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
-                                                        ? select_circuit(loaded.data, circuit.value_or(1))
-                                                        : loaded.data);
-            for (const auto& text : found.notes)
-                cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
-            return std::move(found.records);
-        } catch (const InputError& error) {
-            refusals.emplace_back(file,
-                                  Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
-                                             fmt::format("it is excluded: {}", error.what()), loaded.series.flight});
-            refused.emplace(error);
-            return std::vector<battery::DischargeRecord>{};
-        }
-    };
-    auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && refusals.size() == 1) throw InputError(*refused);
-    for (const auto& [file, refusal] : refusals) cli::leave_out(call, flights, file, refusal);
-    if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
-    return records;
-}
-
 int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto options = identification_options(call, arguments);
     const auto folds = arguments.folds;
-    const auto records = read_records(call, arguments.flights, arguments.circuit);
+    const auto records = cli::discharge_records(call, arguments.flights, arguments.circuit);
     cli::note_folds(call, records.size(), folds);
     cli::ProgressBar identifying("identifications");
     const auto identified = identify_battery(records, options);
