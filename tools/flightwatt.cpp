@@ -26,6 +26,9 @@ struct StageGroup {
 
 const std::vector<StageGroup>& stage_groups() {
     static const std::vector<StageGroup> groups{
+        {"Answers",
+         {{"answer", "how long and how far an aircraft flies, from its logs; `flightwatt LOG...` is the same",
+           stages::answer_stage}}},
         {"Logs",
          {{"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
           {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
@@ -95,14 +98,12 @@ int show_help(const Stage& stage) {
     return stage.run(2, arguments);
 }
 
-/// The stage that a file or folder is for, as a command.
+/// The stage that a file or folder is for, as a command; empty for logs and their folders, and for what is neither.
 std::string command_for(const std::string& file) {
     const auto name = cli::shell_quoted(file);
     std::error_code none;
-    if (std::filesystem::is_directory(file, none))
-        return std::filesystem::exists(std::filesystem::path(file) / "batch.json", none)
-                   ? fmt::format("flightwatt report {} -o report.html", name)
-                   : fmt::format("flightwatt batch {} -o OUT", name);
+    if (std::filesystem::exists(std::filesystem::path(file) / "batch.json", none))
+        return fmt::format("flightwatt report {} -o report.html", name);
     if (!std::filesystem::is_regular_file(file, none)) return "";
     switch (kind_of_text(read_file(file))) {
         case FileKind::mission:
@@ -114,8 +115,14 @@ std::string command_for(const std::string& file) {
         case FileKind::specification:
             return fmt::format("flightwatt profile {} -o OUT", name);
         default:
-            return fmt::format("flightwatt batch {0} -o OUT, or flightwatt segment {0}", name);
+            return "";
     }
+}
+
+/// Whether the first argument is a log or a folder of logs, which `answer` takes.
+bool is_for_answer(const std::string& word) {
+    std::error_code none;
+    return std::filesystem::exists(word, none) && command_for(word).empty();
 }
 
 /// The program without a stage.
@@ -123,7 +130,8 @@ int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
         cli::print(
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-            "usage: flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
+            "usage: flightwatt LOG|FOLDER... [--capacity AH]    how long and how far it flies\n"
+            "       flightwatt STAGE [arguments]               more: flightwatt help STAGE\n" +
             stage_list());
     } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
@@ -153,5 +161,6 @@ int main(int argc, char** argv) {
         word = argc > 2 ? argv[2] : "--help";
         if (const auto stage = find_stage(word)) return show_help(*stage);
     }
+    if (is_for_answer(word)) return stages::answer_stage(argc, argv);
     return cli::run_guarded("flightwatt", [&] { return run_front(word); });
 }

@@ -1,6 +1,5 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
-#include "base/number.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
@@ -14,12 +13,9 @@
 #include "stages.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
-#include <iterator>
 
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace {
@@ -74,17 +70,6 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     return inputs;
 }
 
-/// Now, or the time in SOURCE_DATE_EPOCH (reproducible-builds.org).
-std::string time_of_report() {
-    std::time_t now = std::time(nullptr);
-    if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
-        const auto seconds = parse_unsigned(given);
-        if (!seconds) throw UsageError(fmt::format("SOURCE_DATE_EPOCH is '{}', expected seconds", given));
-        now = static_cast<std::time_t>(*seconds);
-    }
-    return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
-}
-
 /// Where figures are wanted as files.
 void write_figure_files(const cli::StageCall& call, const ReportArguments& arguments,
                         const std::vector<report::Section>& sections, const report::WebFiles& web) {
@@ -121,13 +106,9 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
         throw UsageError("a page is not for a terminal: expected -o FILE.html");
     std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
     if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
-    report::PageHead head{.title = "",
-                          .name = "FlightWatt report",
-                          .facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
     const auto content = make_report(input, log_of(call));
-    head.title = content.title;
+    auto head = page_head(content);
     if (arguments.title) head.title = head.name = valid_utf8(*arguments.title);
-    std::ranges::copy(content.facts, std::back_inserter(head.facts));
     if (web) write_figure_files(call, arguments, content.sections, *web);
     if (wants_page) cli::write_result(call, page_html(head, content.sections, *web));
     if (!call.json) return cli::ok;

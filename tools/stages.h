@@ -3,6 +3,7 @@
 /// The stages, one a file. Each takes the arguments of `flightwatt-STAGE` and returns the exit code.
 namespace flightwatt::stages {
 
+int answer_stage(int argc, char** argv);
 int batch_stage(int argc, char** argv);
 int battery_stage(int argc, char** argv);
 int compare_stage(int argc, char** argv);

@@ -1,5 +1,7 @@
 #include "report/report.h"
 
+#include "base/error.h"
+#include "base/number.h"
 #include "base/parallel.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"
@@ -18,9 +20,12 @@
 #include "report/trends_section.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <future>
 #include <iterator>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -208,6 +213,17 @@ Json summary_json(const Draft& page, const BatchContent& batch) {
     return record_json(output);
 }
 
+/// Now, or the time in SOURCE_DATE_EPOCH (reproducible-builds.org).
+std::string time_of_report() {
+    std::time_t now = std::time(nullptr);
+    if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
+        const auto seconds = parse_unsigned(given);
+        if (!seconds) throw UsageError(fmt::format("SOURCE_DATE_EPOCH is '{}', expected seconds", given));
+        now = static_cast<std::time_t>(*seconds);
+    }
+    return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
+}
+
 }  // namespace
 
 ReportContent make_report(const ReportInput& input, const ReportLog& log) {
@@ -243,6 +259,14 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     title = page_title(batch.flights, page.answers.missions.size());
     summary = summary_json(page, batch);
     return std::move(page.content);
+}
+
+PageHead page_head(const ReportContent& content) {
+    PageHead head{.title = content.title,
+                  .name = "FlightWatt report",
+                  .facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
+    std::ranges::copy(content.facts, std::back_inserter(head.facts));
+    return head;
 }
 
 std::string model_latex(const mechanical::MechanicalModel& model) {

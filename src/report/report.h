@@ -6,6 +6,7 @@
 #include "report/batch_content.h"
 #include "report/html.h"
 #include "report/outline.h"
+#include "report/page.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -50,6 +51,10 @@ struct ReportContent {
 
 /// Makes a report. Throws InputError as read_batch_content(), and UsageError for a capacity that flights contradict.
 ReportContent make_report(const ReportInput& input, const ReportLog& log);
+
+/// Returns the head of a report's page, with the time now, or that of SOURCE_DATE_EPOCH (reproducible-builds.org).
+/// Throws UsageError for a SOURCE_DATE_EPOCH that is not in seconds.
+PageHead page_head(const ReportContent& content);
 
 /// Returns Table I and the constants of the physical model as LaTeX.
 std::string model_latex(const mechanical::MechanicalModel& model);

@@ -1,0 +1,166 @@
+#include "answer/answer.h"
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "base/text.h"
+#include "mechanical/table_one.h"
+#include "mission/feasibility_limits.h"
+#include "mission/mission_file.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::answer {
+namespace {
+
+using flight::Phase;
+
+constexpr double in_95_of_100 = 0.95;
+/// A rotorcraft whose cruises are slower than this hovers.
+constexpr double max_hover_m_per_s = 2.0;
+
+/// The airspeed at which a mission predicts the power: what is asked, or of a rotorcraft the wind that it holds against.
+std::optional<double> mission_airspeed_m_per_s(const KnownAircraft& aircraft, const Question& question) {
+    if (question.airspeed_m_per_s) return question.airspeed_m_per_s;
+    if (!aircraft.model.is_rotorcraft || question.wind_m_per_s == 0.0) return std::nullopt;
+    return std::max(question.wind_m_per_s, mean_ground_speed_m_per_s(aircraft.flights).value_or(0.0));
+}
+
+std::string flights_text(std::size_t flights) {
+    return flights == 1 ? std::string("1 flight") : fmt::format("{} flights", flights);
+}
+
+/// What a power rests on: the flights' own mean, or the physical model or an assumption that changes it.
+std::string power_basis(const KnownAircraft& aircraft, const Question& question) {
+    const auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
+    if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
+    auto basis = "physics, from power and motion " + measured;
+    if (aircraft.model.is_rotorcraft && question.wind_m_per_s > 0.0)
+        basis += "; assumed: those flights were in calm air";
+    return basis;
+}
+
+/// The airspeed of the cruise [m/s]: as asked, or as flown.
+Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question) {
+    if (const auto asked = mission_airspeed_m_per_s(aircraft, question)) return known(*asked, "as asked");
+    const auto& physical = aircraft.model.physical;
+    if (!aircraft.model.is_rotorcraft && physical && physical->mean_airspeed_m_per_s > 0.0)
+        return known(physical->mean_airspeed_m_per_s, "measured in cruise");
+    if (const auto ground = mean_ground_speed_m_per_s(aircraft.flights))
+        return known(*ground, "assumed: the ground speed of the flights, as in calm air");
+    return unknown("the logs have neither airspeed nor position; a flight with GPS shows it");
+}
+
+/// The distance over ground of a cruise along the wind, out and back.
+Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s) {
+    if (!airspeed.value) return unknown(airspeed.unknown);
+    const double speed = *airspeed.value;
+    if (speed <= wind_m_per_s)
+        return unknown(fmt::format("at {:.1f} m/s it makes no way against a wind of {:.1f} m/s", speed, wind_m_per_s));
+    return known(cruise_s * (speed * speed - wind_m_per_s * wind_m_per_s) / speed, airspeed.basis);
+}
+
+/// The mission of the question with a given duration of its cruise.
+mission::MissionVariation variation_of(const KnownAircraft& aircraft, const Question& question) {
+    const auto text = mission_toml(aircraft, question, "answer");
+    const auto file = aircraft.model_file.parent_path() / "mission.toml";
+    return [text, file](double cruise_s) { return mission::parse_mission(text, file, {.cruise_s = cruise_s}); };
+}
+
+/// The mission of the flights' own cruise; its error is why power and time are unknown.
+std::optional<mission::MissionSetup> setup_of_question(const mission::MissionVariation& with_cruise_s,
+                                                       const KnownAircraft& aircraft, Endurance& endurance) {
+    try {
+        return mission::setup_of(with_cruise_s(std::max(1.0, aircraft.model.phases[Phase::cruise].duration_s)));
+    } catch (const InputError& error) {
+        const auto reason =
+            error.hint().empty() ? std::string(error.what()) : fmt::format("{}; {}", error.what(), error.hint());
+        for (auto* quantity : {&endurance.power_w, &endurance.time_s, &endurance.time_95_s, &endurance.distance_m})
+            *quantity = unknown(reason);
+        return std::nullopt;
+    }
+}
+
+double mean_cruise_power_w(const mission::MissionSetup& mission) {
+    if (mission.cruise_level) return mission.cruise_level->mean_w;
+    const auto& cruise = mission.mechanical->phases[Phase::cruise];
+    return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+}
+
+/// Why no time is known with that probability; empty if it may be.
+std::string no_variability(const KnownAircraft& aircraft) {
+    const auto flights = aircraft.model.flights.size();
+    if (flights > 1) return {};
+    return "one flight does not show how flights differ; two more would";
+}
+
+Answered longest(const mission::MissionVariation& with_cruise_s, double other_phases_s,
+                 const std::optional<double>& probability, const std::string& basis) {
+    try {
+        const auto limit = mission::longest_cruise(with_cruise_s, probability);
+        auto text = basis;
+        if (limit.limited_by != mission::LimitingFactor::charge)
+            text += fmt::format("; limited by the pack's {}", to_string(limit.limited_by));
+        return known(limit.value + other_phases_s, std::move(text));
+    } catch (const NoResultError& error) {
+        return unknown(error.what());
+    } catch (const InputError& error) {
+        return unknown(error.what());
+    }
+}
+
+}  // namespace
+
+std::string mission_toml(const KnownAircraft& aircraft, const Question& question, const std::string& name) {
+    auto text = fmt::format("name = {}\nmechanical = {}\nbattery = {}\nreserve_soc_percent = {}\n", toml_string(name),
+                            toml_string(aircraft.model_file.filename().string()),
+                            toml_string(aircraft.battery_file.filename().string()), question.reserve_soc_percent);
+    const auto add = [&](const char* key, const std::optional<double>& value) {
+        if (value) text += fmt::format("{} = {}\n", key, *value);
+    };
+    add("payload_kg", question.payload_kg);
+    add("takeoff_mass_kg", question.takeoff_mass_kg);
+    add("airspeed_m_per_s", mission_airspeed_m_per_s(aircraft, question));
+    return text;
+}
+
+Endurance answer_endurance(const KnownAircraft& aircraft, const Question& question) {
+    Endurance endurance;
+    const auto speed = mean_ground_speed_m_per_s(aircraft.flights);
+    endurance.is_hover = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s &&
+                         (question.wind_m_per_s > 0.0 || speed.value_or(0.0) < max_hover_m_per_s);
+    const auto basis = power_basis(aircraft, question);
+    const auto with_cruise_s = variation_of(aircraft, question);
+    const auto setup = setup_of_question(with_cruise_s, aircraft, endurance);
+    endurance.airspeed_m_per_s = cruise_airspeed(aircraft, question);
+    if (!setup) return endurance;
+    endurance.notes = setup->notes;
+    endurance.power_w = known(mean_cruise_power_w(*setup), basis);
+    const double other_s = setup->duration_s[Phase::takeoff] + setup->duration_s[Phase::landing];
+    const auto& capacity = aircraft.pack.capacity_ah;
+    const auto no_95 = no_variability(aircraft);
+    endurance.time_s =
+        capacity.value ? longest(with_cruise_s, other_s, std::nullopt, basis) : unknown(capacity.unknown);
+    endurance.time_95_s = !endurance.time_s.value ? unknown(endurance.time_s.unknown)
+                          : !no_95.empty()        ? unknown(no_95)
+                                                  : longest(with_cruise_s, other_s, in_95_of_100, basis);
+    const bool holds_place = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s && question.wind_m_per_s > 0.0;
+    const double cruise_s = endurance.time_s.value.value_or(0.0) - other_s;
+    if (!endurance.time_s.value)
+        endurance.distance_m = unknown(endurance.time_s.unknown);
+    else if (holds_place)
+        endurance.distance_m = unknown("it holds its place against the wind; --airspeed answers for a speed");
+    else if (endurance.is_hover)
+        endurance.distance_m = unknown("it hovered in all flights; --airspeed answers for a speed");
+    else
+        endurance.distance_m = distance(endurance.airspeed_m_per_s, cruise_s, question.wind_m_per_s);
+    if (aircraft.model.physical && !aircraft.model.is_rotorcraft)
+        if (auto speeds = speed_to_fly(*aircraft.model.physical, question.wind_m_per_s))
+            endurance.best_speeds = std::move(speeds->best);
+    return endurance;
+}
+
+}  // namespace flightwatt::answer

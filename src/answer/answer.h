@@ -1,0 +1,58 @@
+#pragma once
+
+#include "answer/answered.h"
+#include "answer/flight_facts.h"
+#include "answer/pack_answer.h"
+#include "mechanical/mechanical_model.h"
+#include "mechanical/speed_to_fly.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The questions that pilots ask of an aircraft and its pack: how long, how far, with what payload and in what wind.
+///
+/// An answer is made of a power model, a battery and what the cruises of the flights were like. Each quantity states
+/// what it rests on; one that cannot be known has the reason, and which flight would show it, instead of a value. Time
+/// in the air is the longest mission of take-off, cruise (of a rotorcraft its hover) and landing that begins with a full
+/// pack and lands with the reserve. Distances are along the wind, out and back, in a steady wind.
+namespace flightwatt::answer {
+
+/// What is asked.
+struct Question {
+    double reserve_soc_percent = 20.0;
+    std::optional<double> airspeed_m_per_s = {};  ///< default: as flown
+    std::optional<double> payload_kg = {};        ///< beyond the aircraft's own mass; default: as flown
+    std::optional<double> takeoff_mass_kg = {};   ///< of the flights, where a payload's effect must be assumed
+    double wind_m_per_s = 0.0;
+};
+
+/// What is known of an aircraft from its flights.
+struct KnownAircraft {
+    mechanical::MechanicalModel model;
+    std::filesystem::path model_file;    ///< that has the model, for the mission
+    std::filesystem::path battery_file;  ///< that has the battery
+    std::vector<FlightFacts> flights;
+    PackAnswer pack;
+};
+
+/// How long and how far, and at what power.
+struct Endurance {
+    bool is_hover = false;                           ///< of a rotorcraft that flies as slowly as it flew
+    Answered power_w;                                ///< mean, of hover or cruise
+    Answered time_s;                                 ///< in the air from a full pack to the reserve
+    Answered time_95_s;                              ///< the same, which 95 of 100 flights reach
+    Answered airspeed_m_per_s;                       ///< in cruise
+    Answered distance_m;                             ///< over ground in the cruise, out and back
+    std::vector<mechanical::BestSpeed> best_speeds;  ///< of endurance and range; empty where they are not known
+    std::vector<std::string> notes;                  ///< doubts of the model's use, such as "extrapolated"
+};
+
+/// Answers how long and how far. Throws InputError for a reserve, payload or airspeed that no mission accepts.
+Endurance answer_endurance(const KnownAircraft& aircraft, const Question& question);
+
+/// The mission of a question as a file beside the model, with which other commands go on.
+std::string mission_toml(const KnownAircraft& aircraft, const Question& question, const std::string& name);
+
+}  // namespace flightwatt::answer

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flight/load_flight.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the logs of flights show beside the power of their phases.
+namespace flightwatt::answer {
+
+/// The cruise of one flight, as far as its log shows it.
+struct FlightFacts {
+    std::string flight;
+    double cruise_s = 0.0;
+    std::optional<double> ground_speed_m_per_s = {};  ///< mean of the cruise
+    std::optional<double> farthest_m = {};            ///< from where the log's positions begin
+    std::optional<double> stated_capacity_ah = {};    ///< of the pack, by the log's parameters
+    std::optional<double> mean_voltage_v = {};        ///< of the cruise
+};
+
+/// Returns the facts of each cruise of a log.
+std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded);
+
+/// Returns the mean ground speed of all cruises, each by its duration; std::nullopt where none was logged [m/s].
+std::optional<double> mean_ground_speed_m_per_s(const std::vector<FlightFacts>& facts);
+
+}  // namespace flightwatt::answer

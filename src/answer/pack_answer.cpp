@@ -1,0 +1,107 @@
+#include "answer/pack_answer.h"
+
+#include "base/error.h"
+#include "battery/identification.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::answer {
+namespace {
+
+/// The mean voltage of the cruises, each counting the same.
+std::optional<double> mean_voltage_v(const std::vector<FlightFacts>& facts) {
+    double sum_v = 0.0;
+    double count = 0.0;
+    for (const auto& flight : facts) {
+        if (!flight.mean_voltage_v) continue;
+        sum_v += *flight.mean_voltage_v;
+        count += 1.0;
+    }
+    return count > 0.0 ? std::optional(sum_v / count) : std::nullopt;
+}
+
+/// A pack of constant voltage, as the flights determine no circuit for that reason.
+FoundPack constant_pack(const std::string& reason, const CapacityChoice& capacity,
+                        const std::vector<FlightFacts>& facts) {
+    const auto voltage_v = mean_voltage_v(facts);
+    if (!voltage_v)
+        throw NoResultError(reason + "; no log has the pack's voltage, which a flight with a battery monitor shows");
+    if (!capacity.value_ah) throw NoResultError(reason + "; give the capacity on the pack's label: --capacity AH");
+    FoundPack pack;
+    pack.battery.name = "pack";
+    pack.battery.voltage_v = *voltage_v;
+    pack.battery.capacity_ah = *capacity.value_ah;
+    pack.answer.capacity_ah = known(*capacity.value_ah, capacity.basis);
+    pack.answer.resistance_ohm = unknown(reason);
+    pack.warnings.push_back(
+        fmt::format("the pack is assumed to have {:.1f} V until it is empty: {}", *voltage_v, reason));
+    return pack;
+}
+
+/// Flights that leave more than this factor between the ends of its interval do not determine a capacity.
+constexpr double max_capacity_ratio = 3.0;
+
+/// Without a basis the flights' own estimate is the capacity, where they determine one.
+FoundPack identified_pack(battery::BatteryIdentification identified, const std::string& basis = {}) {
+    FoundPack pack;
+    pack.battery = identified.battery;
+    if (const auto& estimate = identified.battery.flight_estimate)
+        pack.answer.flights_capacity_ah = estimate->capacity_interval_ah;
+    const auto& interval = pack.answer.flights_capacity_ah;
+    const bool is_unknown = basis.empty() && (!interval || interval->high > max_capacity_ratio * interval->low);
+    pack.answer.capacity_ah =
+        is_unknown ? unknown("the flights use too little of the pack; give the capacity on its label: --capacity AH")
+                   : known(identified.battery.capacity_ah, basis.empty() ? "estimated from the flights" : basis);
+    const auto flights = identified.flights.size();
+    pack.answer.resistance_ohm =
+        known(identified.fit.resistance_ohm, fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"));
+    pack.answer.resistance_interval_ohm = identified.errors.resistance_ohm;
+    pack.answer.known_down_to_percent = identified.observed_min_soc_percent;
+    pack.identified = std::move(identified);
+    return pack;
+}
+
+}  // namespace
+
+CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std::vector<FlightFacts>& facts) {
+    if (given_ah) return {given_ah, "as given"};
+    std::optional<double> logged_ah;
+    for (const auto& flight : facts) {
+        if (!flight.stated_capacity_ah) continue;
+        if (logged_ah && *logged_ah != *flight.stated_capacity_ah) return {};
+        logged_ah = flight.stated_capacity_ah;
+    }
+    if (!logged_ah) return {};
+    return {logged_ah, "by the logs' parameters (BATT_CAPACITY, BAT1_CAPACITY)", true};
+}
+
+FoundPack find_pack(std::span<const battery::DischargeRecord> records, const std::string& no_records_reason,
+                    CapacityChoice capacity, const std::vector<FlightFacts>& facts) {
+    if (records.empty()) return constant_pack(no_records_reason, capacity, facts);
+    battery::IdentificationOptions options;
+    options.capacity_ah = capacity.value_ah;
+    options.name = "pack";
+    std::string contradiction;
+    try {
+        try {
+            auto identified = identify_battery(records, options);
+            if (!capacity.is_logged || !estimated_by_flights(identified.battery))
+                return identified_pack(std::move(identified), capacity.basis);
+            contradiction = capacity_warning(identified.battery);
+        } catch (const UsageError& error) {
+            if (!capacity.is_logged) throw;
+            contradiction = error.what();
+        }
+        options.capacity_ah.reset();
+        auto pack = identified_pack(identify_battery(records, options));
+        pack.warnings.push_back(
+            fmt::format("the logs' capacity of {:.3g} Ah is not used: {}", *capacity.value_ah, contradiction));
+        return pack;
+    } catch (const NoResultError& error) {
+        return constant_pack(error.what(), capacity, facts);
+    }
+}
+
+}  // namespace flightwatt::answer

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "answer/answered.h"
+#include "answer/flight_facts.h"
+#include "base/statistics.h"
+#include "battery/battery.h"
+#include "battery/discharge_record.h"
+#include "battery/identified_battery.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The pack that flights were flown on: from their voltage and current, and the capacity that is given or logged.
+namespace flightwatt::answer {
+
+/// What is known of a pack.
+struct PackAnswer {
+    Answered capacity_ah;
+    std::optional<Interval> flights_capacity_ah = {};  ///< by the flights themselves, 95 %
+    Answered resistance_ohm = {};
+    std::optional<Interval> resistance_interval_ohm = {};  ///< 95 %
+    std::optional<double> known_down_to_percent = {};      ///< of its charge; below, the voltage is assumed
+};
+
+/// A pack for missions, and what is said of it.
+struct FoundPack {
+    battery::Battery battery;
+    PackAnswer answer;
+    std::optional<battery::BatteryIdentification> identified = {};  ///< absent for a constant voltage
+    std::vector<std::string> warnings = {};
+};
+
+/// A pack's capacity, and where it is from.
+struct CapacityChoice {
+    std::optional<double> value_ah = {};
+    std::string basis = {};
+    bool is_logged = false;  ///< stated by the logs, not by the user
+};
+
+/// Returns the given capacity, else what the logs state where all agree, else none.
+CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std::vector<FlightFacts>& facts);
+
+/// Returns the pack that the discharges of flights determine. A logged capacity that contradicts them is not used, with
+/// a warning. Where they determine no circuit, it has the flights' mean voltage until it is empty. Throws NoResultError
+/// where that needs a capacity or a voltage that is unknown, and UsageError for a given capacity below what was drawn.
+FoundPack find_pack(std::span<const battery::DischargeRecord> records, const std::string& no_records_reason,
+                    CapacityChoice capacity, const std::vector<FlightFacts>& facts);
+
+}  // namespace flightwatt::answer

@@ -1,0 +1,179 @@
+#include "cli/output/answer_output.h"
+
+#include "base/text.h"
+#include "cli/output/physical_output.h"
+#include "cli/screen/diagnostic_lines.h"
+
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include <boost/algorithm/string/replace.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::answer {
+
+Fields<Answered> record_fields(const Answered*) {
+    using R = Answered;
+    return {field("value", &R::value, "in the unit of the key; null: unknown"),
+            field("basis", &R::basis, "what it rests on: measured, physics, assumed"),
+            field("unknown", &R::unknown, "why there is no value, and what would give one")};
+}
+
+}  // namespace flightwatt::answer
+
+namespace flightwatt::cli {
+namespace {
+
+using answer::Answered;
+using answer::Endurance;
+using answer::PackAnswer;
+
+constexpr double mohm_per_ohm = 1000.0;
+constexpr double m_per_km = 1000.0;
+
+/// "9 min 10 s", in whole seconds.
+std::string time_text(double time_s) { return duration_text(std::round(time_s)); }
+
+std::string speed_text(double m_per_s) { return fmt::format("{:.1f} m/s", m_per_s); }
+
+std::string counted(std::size_t count, const char* of) {
+    return fmt::format("{} {}{}", count, of, count == 1 ? "" : "s");
+}
+
+std::string aircraft_line(const AircraftAnswer& answer) {
+    const auto name = answer.name.empty() || answer.name == answer.aircraft ? "" : fmt::format(" ({})", answer.name);
+    return fmt::format("{}{}: {} used of {}", answer.aircraft, name, counted(answer.used, "flight"),
+                       counted(answer.logs, "log"));
+}
+
+std::string power_line(const Endurance& endurance) {
+    if (!endurance.power_w.value) return "unknown: " + endurance.power_w.unknown;
+    auto text = fmt::format("{:.0f} W", *endurance.power_w.value);
+    if (endurance.airspeed_m_per_s.value && !endurance.is_hover)
+        text += " at " + speed_text(*endurance.airspeed_m_per_s.value);
+    return fmt::format("{} ({})", text, endurance.power_w.basis);
+}
+
+std::string time_line(const AircraftAnswer& answer) {
+    const auto& [time_s, time_95_s] = std::tie(answer.endurance.time_s, answer.endurance.time_95_s);
+    if (!time_s.value) return "unknown: " + time_s.unknown;
+    auto text = fmt::format("{} from a full pack of {:.3g} Ah to {:g} %", time_text(*time_s.value),
+                            answer.pack.capacity_ah.value.value_or(0.0), answer.question.reserve_soc_percent);
+    text += time_95_s.value ? fmt::format("; {} in 95 of 100 flights", time_text(*time_95_s.value))
+                            : "; in 95 of 100 flights unknown: " + time_95_s.unknown;
+    if (const auto down_to = answer.pack.known_down_to_percent;
+        down_to && *down_to > answer.question.reserve_soc_percent)
+        text += fmt::format("; voltage below {:.0f} % assumed: fly one pack lower", *down_to);
+    return text;
+}
+
+std::string distance_line(const AircraftAnswer& answer) {
+    const auto& endurance = answer.endurance;
+    if (!endurance.distance_m.value) return "unknown: " + endurance.distance_m.unknown;
+    auto text = fmt::format("{:.1f} km in all, out and back", *endurance.distance_m.value / m_per_km);
+    text += answer.question.wind_m_per_s > 0.0
+                ? fmt::format(" along a wind of {}", speed_text(answer.question.wind_m_per_s))
+                : std::string(" in calm air");
+    return fmt::format("{} ({})", text, endurance.distance_m.basis);
+}
+
+/// Empty where no speed is known.
+std::string speeds_line(const Endurance& endurance) {
+    std::vector<std::string> texts;
+    for (const auto& best : endurance.best_speeds) {
+        if (best.airspeed_m_per_s && !best.below_flown && !best.above_flown)
+            texts.push_back(fmt::format("{} at {}", best.purpose, speed_text(*best.airspeed_m_per_s)));
+        else
+            texts.push_back(fmt::format("{} unknown: {} legs would show it", best.purpose,
+                                        best.above_flown ? "faster" : "slower"));
+    }
+    return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+std::string pack_line(const PackAnswer& pack) {
+    std::string text = pack.capacity_ah.value
+                           ? fmt::format("{:.3g} Ah {}", *pack.capacity_ah.value, pack.capacity_ah.basis)
+                           : std::string("capacity unknown");
+    if (const auto& flights = pack.flights_capacity_ah)
+        text += fmt::format("; the flights indicate {:.3g} to {:.3g} Ah", flights->low, flights->high);
+    if (!pack.resistance_ohm.value) return text + "; resistance unknown: " + pack.resistance_ohm.unknown;
+    text += fmt::format("; {:.3g} mOhm", *pack.resistance_ohm.value * mohm_per_ohm);
+    if (const auto& interval = pack.resistance_interval_ohm)
+        text += fmt::format(" ({:.3g} to {:.3g})", interval->low * mohm_per_ohm, interval->high * mohm_per_ohm);
+    return text;
+}
+
+}  // namespace
+
+Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
+    using R = AircraftAnswer;
+    using Q = answer::Question;
+    const auto value = [](Answered Endurance::*of) { return at(&R::endurance, of, &Answered::value); };
+    return list_fields<R>(
+        field("aircraft", &R::aircraft, "a text for --aircraft", csv_column{}),
+        field("aircraft_name", &R::name, "name in the logs", csv_column{}),
+        field("folder", &R::folder, "folder of its model, pack, mission and page", csv_column{}),
+        field("logs", &R::logs, "logs that were read", csv_column{}),
+        field("flights_used", &R::used, "flights of the model", csv_column{}),
+        field("no_answer", &R::no_answer, "why nothing is answered; empty if something is", csv_column{}),
+        field("reserve_soc_percent", at(&R::question, &Q::reserve_soc_percent), "charge to land with", csv_column{}),
+        field("payload_kg", at(&R::question, &Q::payload_kg), "payload; null: as flown", csv_column{}),
+        field("wind_m_per_s", at(&R::question, &Q::wind_m_per_s), "steady wind", csv_column{}),
+        field("is_hover", at(&R::endurance, &Endurance::is_hover), "the power is that of hover", csv_column{}),
+        field("power_w", at(&R::endurance, &Endurance::power_w), "mean of hover or cruise"),
+        field("power_w", value(&Endurance::power_w), "", csv_column{}, not_in_json{}),
+        field("time_in_air_s", at(&R::endurance, &Endurance::time_s), "from a full pack to the reserve"),
+        field("time_in_air_s", value(&Endurance::time_s), "", csv_column{}, not_in_json{}),
+        field("time_in_air_95_s", at(&R::endurance, &Endurance::time_95_s), "what 95 of 100 flights reach"),
+        field("time_in_air_95_s", value(&Endurance::time_95_s), "", csv_column{}, not_in_json{}),
+        field("airspeed_m_per_s", at(&R::endurance, &Endurance::airspeed_m_per_s), "of the cruise"),
+        field("airspeed_m_per_s", value(&Endurance::airspeed_m_per_s), "", csv_column{}, not_in_json{}),
+        field("distance_m", at(&R::endurance, &Endurance::distance_m), "over ground, out and back along the wind"),
+        field("distance_m", value(&Endurance::distance_m), "", csv_column{}, not_in_json{}),
+        field("best_speeds", at(&R::endurance, &Endurance::best_speeds), "of endurance and range"),
+        field("capacity_ah", at(&R::pack, &PackAnswer::capacity_ah), "of the pack"),
+        field("capacity_ah", at(&R::pack, &PackAnswer::capacity_ah, &Answered::value), "", csv_column{}, not_in_json{}),
+        field("flights_capacity_ah_interval_95", at(&R::pack, &PackAnswer::flights_capacity_ah), "by the flights"),
+        field("resistance_ohm", at(&R::pack, &PackAnswer::resistance_ohm), "series resistance of the pack"),
+        field("resistance_ohm", at(&R::pack, &PackAnswer::resistance_ohm, &Answered::value), "", csv_column{},
+              not_in_json{}),
+        field("resistance_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_interval_ohm)),
+        field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
+        field("prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "", csv_column{},
+              not_in_json{}),
+        field("notes", at(&R::endurance, &Endurance::notes), "doubts of these answers"),
+        field("page", &R::page, "file of the report; empty without one"));
+}
+
+std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
+    constexpr std::size_t label_width = 10;
+    auto text = wrapped(aircraft_line(answer), columns) + "\n";
+    std::set<std::string> given;
+    const auto add = [&](const std::string& label, const std::string& line) {
+        if (line.empty()) return;
+        const bool is_repeated = !given.insert(line).second;  // a reason why nothing is known
+        auto lines = wrapped(is_repeated ? "unknown, for the same reason" : line, columns - label_width);
+        boost::algorithm::replace_all(lines, "\n  ", "\n" + std::string(label_width, ' '));
+        text += fmt::format("{:<{}}{}\n", label, label_width, lines);
+    };
+    if (!answer.no_answer.empty()) {
+        add("No answer", answer.no_answer);
+        return text;
+    }
+    add(answer.endurance.is_hover ? "Hover" : "Cruise", power_line(answer.endurance));
+    add("Time", time_line(answer));
+    add("Distance", distance_line(answer));
+    add("Speeds", speeds_line(answer.endurance));
+    add("Pack", pack_line(answer.pack));
+    const auto& error = answer.prediction_error_percent;
+    add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,
+                                             error.basis)
+                               : "unknown: " + error.unknown);
+    add("Doubts", fmt::format("{}", fmt::join(answer.endurance.notes, "; ")));
+    add("Page", answer.page);
+    return text;
+}
+
+}  // namespace flightwatt::cli

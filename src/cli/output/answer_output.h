@@ -1,0 +1,37 @@
+#pragma once
+
+#include "answer/answer.h"
+#include "answer/pack_answer.h"
+#include "cli/stage.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace flightwatt::answer {
+Fields<Answered> record_fields(const Answered*);
+}
+
+/// Output of `flightwatt LOG...`: the answers about one aircraft.
+namespace flightwatt::cli {
+
+/// The answers about one aircraft.
+struct AircraftAnswer {
+    std::string aircraft;   ///< a text for --aircraft; the only flight's name where nothing identifies it
+    std::string name;       ///< "ArduCopter"; may be empty
+    std::string folder;     ///< of its batch
+    std::size_t logs = 0;   ///< that were read for it
+    std::size_t used = 0;   ///< flights of the model
+    std::string no_answer;  ///< why nothing is answered; empty if something is
+    answer::Question question;
+    answer::Endurance endurance;
+    answer::PackAnswer pack;
+    answer::Answered prediction_error_percent;  ///< of the energy of flights left out
+    std::string page;                           ///< file of the report; empty without one
+};
+Fields<AircraftAnswer> record_fields(const AircraftAnswer*);
+
+/// At most ten lines for a pilot, broken between words at `columns`.
+std::string answer_text(const AircraftAnswer& answer, std::size_t columns);
+
+}  // namespace flightwatt::cli

@@ -1,0 +1,117 @@
+#include "answer/answer.h"
+
+#include "base/atomic_file.h"
+#include "battery/battery_toml.h"
+#include "helpers/made_up_flights.h"
+#include "helpers/test_paths.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::answer {
+namespace {
+
+using flight::Phase;
+using testing::HasSubstr;
+
+/// An aircraft of constant power on a pack of 10 V without resistance.
+class AnswerTest : public testing::Test {
+  protected:
+    KnownAircraft aircraft_of(double cruise_w, double capacity_ah, std::size_t flights = 4) {
+        KnownAircraft aircraft;
+        aircraft.model = test::published_model();
+        for (std::size_t i = 0; i < flights; ++i) aircraft.model.flights.push_back({"flight" + std::to_string(i), {}});
+        for (auto& phase : aircraft.model.phases.values) {
+            phase.fourier = {0.01, cruise_w, {}, {}};
+            phase.duration_s = 60.0;
+            if (flights > 1) phase.level_spread = {flights, 0.05 * cruise_w, 0.0, 1.0};
+        }
+        aircraft.model_file = folder_ / "model.toml";
+        aircraft.battery_file = folder_ / "pack.toml";
+        battery::Battery pack{"pack", 10.0, 0.0, capacity_ah};
+        write_file_atomically(aircraft.model_file, to_toml(aircraft.model));
+        write_file_atomically(aircraft.battery_file, to_toml(pack));
+        aircraft.pack.capacity_ah = known(capacity_ah, "as given");
+        aircraft.flights = {{"flight0", 60.0, 12.0, 500.0}};
+        return aircraft;
+    }
+
+    std::filesystem::path folder_ = test::scratch_dir();
+};
+
+TEST_F(AnswerTest, TimeIsTheChargeAboveTheReserveOverThePower) {
+    const auto endurance = answer_endurance(aircraft_of(100.0, 5.0), {.reserve_soc_percent = 20.0});
+    EXPECT_NEAR(endurance.power_w.value.value(), 100.0, 1e-6);
+    EXPECT_EQ(endurance.power_w.basis, "measured on 4 flights");
+    EXPECT_NEAR(endurance.time_s.value.value(), 0.8 * 5.0 * 10.0 / 100.0 * 3600.0, 1.0);
+    EXPECT_LT(endurance.time_95_s.value.value(), 0.97 * *endurance.time_s.value) << "flights differ by 5 %";
+    EXPECT_GT(endurance.time_95_s.value.value(), 0.8 * *endurance.time_s.value);
+}
+
+TEST_F(AnswerTest, OneFlightHasNoTimeIn95Of100) {
+    const auto endurance = answer_endurance(aircraft_of(100.0, 5.0, 1), {});
+    EXPECT_TRUE(endurance.time_s.value);
+    EXPECT_FALSE(endurance.time_95_s.value);
+    EXPECT_EQ(endurance.time_95_s.unknown, "one flight does not show how flights differ; two more would");
+}
+
+TEST_F(AnswerTest, NoTimeWithoutACapacity) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.pack.capacity_ah = unknown("no label");
+    const auto endurance = answer_endurance(aircraft, {});
+    EXPECT_TRUE(endurance.power_w.value);
+    for (const auto& answered : {endurance.time_s, endurance.time_95_s, endurance.distance_m}) {
+        EXPECT_FALSE(answered.value);
+        EXPECT_EQ(answered.unknown, "no label");
+    }
+}
+
+TEST_F(AnswerTest, WindShortensTheWayOutAndBackAndNotTheTime) {
+    const auto aircraft = aircraft_of(100.0, 5.0);
+    const auto calm = answer_endurance(aircraft, {});
+    const auto windy = answer_endurance(aircraft, {.wind_m_per_s = 6.0});
+    const double cruise_s = *calm.time_s.value - 120.0;
+    EXPECT_NEAR(calm.distance_m.value.value(), 12.0 * cruise_s, 1e-6 * cruise_s);
+    EXPECT_EQ(windy.time_s.value, calm.time_s.value);
+    const double out_m = 0.5 * windy.distance_m.value.value();
+    EXPECT_NEAR(out_m / (12.0 - 6.0) + out_m / (12.0 + 6.0), cruise_s, 1e-6 * cruise_s);
+}
+
+TEST_F(AnswerTest, NoWayBackAgainstAWindAsFastAsTheAircraft) {
+    const auto endurance = answer_endurance(aircraft_of(100.0, 5.0), {.wind_m_per_s = 12.0});
+    EXPECT_FALSE(endurance.distance_m.value);
+    EXPECT_THAT(endurance.distance_m.unknown, HasSubstr("makes no way against a wind of 12.0 m/s"));
+}
+
+TEST_F(AnswerTest, NoDistanceOfAHover) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.model.is_rotorcraft = true;
+    aircraft.flights.front().ground_speed_m_per_s = 1.9;
+    EXPECT_TRUE(answer_endurance(aircraft, {}).is_hover);
+    EXPECT_FALSE(answer_endurance(aircraft, {}).distance_m.value);
+    aircraft.flights.front().ground_speed_m_per_s = 2.1;
+    EXPECT_FALSE(answer_endurance(aircraft, {}).is_hover);
+    EXPECT_TRUE(answer_endurance(aircraft, {}).distance_m.value);
+}
+
+TEST_F(AnswerTest, APayloadThatTheFlightsDoNotShowIsUnknownWithTheRemedy) {
+    const auto endurance = answer_endurance(aircraft_of(100.0, 5.0), {.payload_kg = 0.5});
+    EXPECT_FALSE(endurance.power_w.value);
+    EXPECT_THAT(endurance.power_w.unknown, HasSubstr("takeoff_mass_kg"));
+    EXPECT_FALSE(endurance.time_s.value);
+}
+
+TEST_F(AnswerTest, APayloadOfARotorcraftOfKnownMassRaisesItsPowerByMomentumTheory) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.model.is_rotorcraft = true;
+    write_file_atomically(aircraft.model_file, to_toml(aircraft.model));
+    const auto endurance = answer_endurance(aircraft, {.payload_kg = 1.0, .takeoff_mass_kg = 2.0});
+    EXPECT_NEAR(endurance.power_w.value.value(), 100.0 * std::pow(1.5, 1.5), 0.5);
+    EXPECT_THAT(endurance.notes, testing::Contains(HasSubstr("assumed")));
+}
+
+}  // namespace
+}  // namespace flightwatt::answer

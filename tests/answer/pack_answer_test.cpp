@@ -1,0 +1,53 @@
+#include "answer/pack_answer.h"
+
+#include "base/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::answer {
+namespace {
+
+using testing::HasSubstr;
+
+FlightFacts logged(std::optional<double> capacity_ah, std::optional<double> voltage_v = 15.0) {
+    return {.flight = "a", .cruise_s = 60.0, .stated_capacity_ah = capacity_ah, .mean_voltage_v = voltage_v};
+}
+
+TEST(ChooseCapacity, TakesTheGivenOneBeforeThatOfTheLogs) {
+    EXPECT_EQ(choose_capacity(3.0, {logged(5.0)}).value_ah, 3.0);
+    EXPECT_FALSE(choose_capacity(3.0, {logged(5.0)}).is_logged);
+    EXPECT_EQ(choose_capacity({}, {logged(5.0), logged({})}).value_ah, 5.0);
+    EXPECT_TRUE(choose_capacity({}, {logged(5.0)}).is_logged);
+}
+
+TEST(ChooseCapacity, HasNoneWhereLogsDiffer) {
+    EXPECT_FALSE(choose_capacity({}, {logged(5.0), logged(5.2)}).value_ah);
+    EXPECT_FALSE(choose_capacity({}, {logged({})}).value_ah);
+}
+
+TEST(FindPack, HasTheMeanVoltageWhereNothingElseIsKnown) {
+    const auto pack = find_pack({}, "no current", {5.0, "as given"}, {logged({}, 15.0), logged({}, 16.0)});
+    EXPECT_NEAR(pack.battery.voltage_v, 15.5, 1e-12);
+    EXPECT_EQ(pack.battery.capacity_ah, 5.0);
+    EXPECT_FALSE(pack.answer.resistance_ohm.value);
+    EXPECT_EQ(pack.answer.resistance_ohm.unknown, "no current");
+    ASSERT_EQ(pack.warnings.size(), 1U);
+    EXPECT_THAT(pack.warnings.front(), HasSubstr("assumed to have 15.5 V"));
+}
+
+TEST(FindPack, SaysWhatIsMissing) {
+    const auto reason = [](const CapacityChoice& capacity, const FlightFacts& facts) -> std::string {
+        try {
+            find_pack({}, "no current", capacity, {facts});
+        } catch (const NoResultError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(reason({}, logged({})), HasSubstr("--capacity AH"));
+    EXPECT_THAT(reason({5.0, "as given"}, logged({}, {})), HasSubstr("no log has the pack's voltage"));
+}
+
+}  // namespace
+}  // namespace flightwatt::answer

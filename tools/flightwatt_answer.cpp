@@ -1,0 +1,273 @@
+// flightwatt LOG...: how long and how far an aircraft flies, from its logs, in one command.
+
+#include "answer/answer.h"
+#include "answer/pack_answer.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "batch/manifest.h"
+#include "battery/battery_toml.h"
+#include "cli/output/answer_output.h"
+#include "cli/output/batch_folder.h"
+#include "cli/output/battery_output.h"
+#include "cli/output/discharge_input.h"
+#include "cli/output/flight_options.h"
+#include "cli/screen_table.h"
+#include "cli/stage.h"
+#include "cli/terminal.h"
+#include "mission/mission_file.h"
+#include "report/html.h"
+#include "report/page.h"
+#include "report/report.h"
+#include "stages.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace {
+
+using namespace flightwatt;
+
+constexpr auto default_folder = "flightwatt-out";
+
+struct AnswerArguments {
+    cli::BatchArguments batch;
+    answer::Question question;
+    std::optional<double> capacity_ah;
+    std::optional<std::string> table;
+    bool no_page = false;
+};
+
+/// The call with the folder of one aircraft in place of its logs.
+cli::StageCall folder_call(cli::StageCall call, const std::string& folder) {
+    call.inputs = {folder};
+    return call;
+}
+
+/// The pack of the flights in a folder, with what is said of it.
+answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArguments& arguments,
+                                 const std::vector<answer::FlightFacts>& facts) {
+    std::vector<battery::DischargeRecord> records;
+    std::string no_records_reason;
+    try {
+        records = cli::discharge_records(call, arguments.batch.flights);
+    } catch (const InputError& error) {
+        no_records_reason = error.what();
+    }
+    auto pack = find_pack(records, no_records_reason, choose_capacity(arguments.capacity_ah, facts), facts);
+    for (const auto& warning : pack.warnings) cli::warn(call, warning);
+    if (pack.identified)
+        for (const auto& remark : cli::battery_remarks(*pack.identified))
+            cli::add_diagnostic(call, {Severity::note, "the pack", remark.text});
+    return pack;
+}
+
+answer::Answered prediction_error(const mechanical::MechanicalModel& model) {
+    if (model.validation)
+        for (const auto& score : model.validation->scores)
+            if (score.model == model.validation->default_model)
+                return answer::known(score.mean_absolute_error_percent,
+                                     fmt::format("{} flights, each left out", score.flights));
+    return answer::unknown(model.flights.size() == 1 ? "a second flight would show how well the first predicts it"
+                                                     : "the flights do not predict each other");
+}
+
+/// Writes the report of a folder and its mission; returns its name.
+std::string write_page(const cli::StageCall& call, const std::filesystem::path& folder,
+                       const mission::MissionVariant& mission) {
+    const auto file = folder / "report.html";
+    report::ReportInput input;
+    input.out = folder;
+    input.missions = {mission};
+    const report::ReportLog log{[&](const std::string& text) {
+        cli::add_diagnostic(call, {Severity::note, "the page", text});
+    }};
+    try {
+        const auto web = report::read_web_files(report::web_folder());
+        const auto content = make_report(input, log);
+        write_file_atomically(file, page_html(page_head(content), content.sections, web));
+        return file.string();
+    } catch (const InputError& error) {
+        cli::warn(call, fmt::format("no page is written: {}; {}", error.what(), error.hint()));
+        return "";
+    }
+}
+
+/// The flights of one aircraft in a folder of their own, listed.
+struct AircraftFlights {
+    std::string aircraft;
+    batch::BatchOptions options;
+    batch::BatchFlights flights;
+    cli::ListedFlights listed;
+};
+
+/// Answers for flights of one aircraft.
+void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments, const AircraftFlights& of,
+                    cli::AircraftAnswer& answer) {
+    const auto& folder = of.options.out;
+    for (const auto& flight : of.flights)
+        if (!flight.selection.flights.empty()) add_diagnostics(call, flight);
+    if (totals_of(of.flights).accepted == 0)
+        throw NoResultError(of.flights.size() == 1 ? reason_without_log(of.flights.front().record)
+                                                   : fmt::format("none of {} logs can be used", of.flights.size()));
+    const auto fitted = fit_folder(call, arguments.batch, of.flights, of.options, of.listed);
+    if (!fitted) {
+        remove_model(call, folder);
+        throw NoResultError("no flight has measured power; a log of a battery monitor with a current sensor has it");
+    }
+    const auto& model = fitted->fit.model;
+    answer.used = model.flights.size();
+    const auto inner = folder_call(call, folder.string());
+    const auto facts = cli::from_flights<answer::FlightFacts>(
+        inner, arguments.batch.flights, [](const auto&, const auto& loaded) { return answer::flight_facts(loaded); });
+    const auto pack = pack_of_folder(inner, arguments, facts);
+    const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / "pack.toml", facts, pack.answer};
+    const auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
+    write_file_atomically(aircraft.battery_file, comment + to_toml(pack.battery));
+    answer.pack = pack.answer;
+    answer.endurance = answer_endurance(aircraft, arguments.question);
+    answer.prediction_error_percent = prediction_error(model);
+    const auto mission_file = folder / "mission.toml";
+    write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, "mission"));
+    if (!arguments.no_page && answer.endurance.power_w.value)
+        answer.page = write_page(call, folder, mission::read_mission(mission_file));
+}
+
+/// The same; what stands in the way is the answer.
+cli::AircraftAnswer answer_aircraft(const cli::StageCall& call, const AnswerArguments& arguments,
+                                    const AircraftFlights& of) {
+    cli::AircraftAnswer answer;
+    answer.aircraft = of.aircraft;
+    answer.folder = of.options.out.string();
+    answer.logs = of.flights.size();
+    answer.question = arguments.question;
+    for (const auto& flight : of.flights)
+        if (answer.name.empty()) answer.name = flight.record.aircraft_name;
+    try {
+        answer_flights(call, arguments, of, answer);
+    } catch (const NoResultError& error) {
+        answer.no_answer = error.what();
+    } catch (const InputError& error) {
+        answer.no_answer = error.hint().empty() ? error.what() : fmt::format("{}; {}", error.what(), error.hint());
+    }
+    return answer;
+}
+
+/// The aircraft to answer for, the one with the most flights unless each is asked for.
+std::vector<batch::AircraftGroup> chosen_groups(const cli::StageCall& call, const AnswerArguments& arguments,
+                                                const cli::ChosenAircraft& flown) {
+    auto groups = cli::certain_aircraft(call, flown.groups, flown.flights);
+    if (arguments.batch.flights.each || groups.size() < 2) return groups;
+    const auto most = std::ranges::max_element(groups, {}, [](const auto& group) { return group.flights.size(); });
+    std::vector<std::string> others;
+    for (const auto& group : groups)
+        if (&group != &*most) others.push_back(group.selector);
+    cli::warn(call, fmt::format("{} other aircraft: {}; --each answers for each, --aircraft NAME for one",
+                                others.size(), fmt::join(others, ", ")));
+    return {*most};
+}
+
+std::vector<cli::AircraftAnswer> answer_all(const cli::StageCall& call, const AnswerArguments& arguments,
+                                            batch::BatchFlights flights, const batch::BatchOptions& options) {
+    auto listed = list_flights(call, flights, options);
+    for (const auto& flight : flights)
+        if (flight.selection.flights.empty()) add_diagnostics(call, flight);
+    const auto& groups = listed.flown.groups;
+    if (groups.size() < 2 || options.load.aircraft || arguments.batch.flights.mix_aircraft) {
+        const auto name = groups.empty() ? flights.front().record.flight : groups.front().selector;
+        return {answer_aircraft(
+            call, arguments, {options.load.aircraft.value_or(name), options, std::move(flights), std::move(listed)})};
+    }
+    remove_model(call, options.out);
+    std::vector<cli::AircraftAnswer> answers;
+    for (const auto& group : chosen_groups(call, arguments, listed.flown)) {
+        AircraftFlights of{group.selector, options, {}, {}};
+        of.flights = separate_aircraft(group, listed.flown, of.options);
+        of.listed = list_flights(call, of.flights, of.options);
+        answers.push_back(answer_aircraft(call, arguments, of));
+    }
+    return answers;
+}
+
+/// JSON of the stage.
+struct AnswerOutput {
+    std::vector<cli::AircraftAnswer> aircraft;
+};
+
+Fields<AnswerOutput> record_fields(const AnswerOutput*) {
+    return {field("aircraft", &AnswerOutput::aircraft, "answers for each aircraft")};
+}
+
+int answer_logs(const cli::StageCall& call, const AnswerArguments& arguments) {
+    const auto out = call.output.value_or(default_folder);
+    cli::refuse_folder_of_logs(call, out);
+    const auto options = cli::batch_options(arguments.batch, out);
+    const cli::BatchFolder folder(options.out);
+    cli::ProgressBar bar("logs");
+    auto flights = read_logs(call, arguments.batch, options,
+                             [&](std::size_t done, std::size_t all, const auto&) { bar.show(done, all); });
+    bar.hide();
+    const auto totals = totals_of(flights);
+    const AnswerOutput output{answer_all(call, arguments, std::move(flights), options)};
+    if (arguments.table) write_file_atomically(*arguments.table, csv_of<cli::AircraftAnswer>(output.aircraft));
+    if (call.json) {
+        cli::print_json(call, output);
+    } else {
+        std::string text;
+        for (const auto& one : output.aircraft)
+            text += (text.empty() ? "" : "\n") + answer_text(one, cli::terminal_columns(stdout));
+        cli::print(text);
+    }
+    const bool is_answered =
+        std::ranges::any_of(output.aircraft, [](const auto& one) { return one.no_answer.empty(); });
+    if (!is_answered && totals.accepted > 0) return cli::no_answer;
+    return totals.rejected_of_this_run > 0 ? cli::input_rejected : cli::ok;
+}
+
+}  // namespace
+
+int flightwatt::stages::answer_stage(int argc, char** argv) {
+    cli::StageDefinition stage{
+        "answer", "LOG|FOLDER... [--capacity AH]",
+        R"(Answers from logs, in one command: how long and how far the aircraft flies on a full pack, in what power,
+the state of its pack, how well new flights are predicted, and a page with all of it. Each answer states what it rests
+on; what cannot be known says which flight would show it. `flightwatt LOG...` is the same.
+
+Logs are ArduPilot's (.bin, .log), PX4's (.ulg), Paparazzi's (.data with its .log) and CSV. Results are in the folder
+of --output (flightwatt-out), and logs that have not changed are not read again. Of several aircraft it answers for the
+one with the most flights; --each answers for each of them.)"};
+    stage.examples = {"flightwatt flight.bin --capacity 5.2", "flightwatt logs --payload 0.5 --wind 6",
+                      "flightwatt logs --each --table fleet.csv"};
+    stage.json_schema = cli::document_schema<AnswerOutput>;
+    stage.uses_threads = true;
+    stage.output_value = "DIR";
+    stage.output_help = "the folder of the results; default: flightwatt-out";
+    AnswerArguments arguments;
+    arguments.batch.prune = true;
+    arguments.batch.note_changes = false;
+    auto& options = stage.options;
+    auto& question = arguments.question;
+    cli::add_capacity_option(
+        options, arguments.capacity_ah,
+        "the value on the pack's label; default: that of the logs' parameters, or else an estimate "
+        "from the flights");
+    options.add("reserve", question.reserve_soc_percent, {.value = "PERCENT", .min = 0.0, .max = 99.0},
+                "charge to land with");
+    options.add("payload", question.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0},
+                "payload beyond the aircraft's own mass; default: as flown");
+    options.add("mass", question.takeoff_mass_kg, {.value = "KG", .min = 0.0, .max = 10000.0, .needs = {"payload"}},
+                "mass of the aircraft as it flew, where the logs do not state it");
+    options.add("airspeed", question.airspeed_m_per_s, {.value = "M/S", .min = 0.0, .max = 100.0},
+                "airspeed of the cruise; default: as flown");
+    options.add("wind", question.wind_m_per_s, {.value = "M/S", .min = 0.0, .max = 100.0},
+                "steady wind: distances are out and back along it, and a rotorcraft holds against it");
+    options.add("table", arguments.table, cli::output_file("FILE.csv"), "write one row an aircraft to FILE");
+    options.add("no-page", arguments.no_page, "write no page");
+    cli::add_each_option(options, arguments.batch.flights, "answers for each aircraft, in a folder of its own");
+    cli::add_filter_options(options, arguments.batch.filter);
+    cli::add_flight_options(options, arguments.batch.flights);
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return answer_logs(call, arguments); });
+}
