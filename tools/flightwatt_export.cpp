@@ -1,15 +1,19 @@
 // flightwatt export: flights, models and missions in the forms that other programs read.
 
+#include "answer/failsafe.h"
 #include "base/input_file.h"
+#include "base/number.h"
 #include "base/units.h"
 #include "battery/battery_toml.h"
 #include "cli/options.h"
 #include "cli/output/battery_output.h"
+#include "cli/output/failsafe_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "exchange/autopilot_parameters.h"
+#include "exchange/failsafe_parameters.h"
 #include "exchange/flown_track.h"
 #include "exchange/message_table.h"
 #include "exchange/model_text.h"
@@ -23,6 +27,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
@@ -46,6 +51,8 @@ struct ExportArguments {
     std::optional<std::string> format;
     std::optional<std::string> message;
     exchange::EstimatorInput estimator;
+    answer::FailsafeRequest failsafe;
+    std::optional<std::string> wind;
     std::optional<double> capacity_ah;
     bool with_replay = false;
     flight::LoadOptions load;
@@ -56,6 +63,7 @@ constexpr std::array kind_names{"log or series", "mechanical model", "battery", 
 std::string name_of(ExportKind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
 
 using WriteParameters = exchange::ParameterText (*)(const exchange::EstimatorInput&);
+using WriteFailsafe = exchange::ParameterText (*)(const exchange::EstimatorInput&, const answer::FailsafeCard&);
 
 struct Format {
     std::string name;
@@ -63,6 +71,8 @@ struct Format {
     std::set<ExportKind> kinds;
     std::set<std::string> options;    ///< that it uses, of those that not all use
     WriteParameters write = nullptr;  ///< of parameters
+    WriteFailsafe write_failsafe = nullptr;
+    bool writes_parameters() const { return write != nullptr || write_failsafe != nullptr; }
 };
 
 const std::vector<Format>& formats() {
@@ -70,6 +80,10 @@ const std::vector<Format>& formats() {
     static const std::set<ExportKind> of_aircraft{model, battery, mission};
     static const std::set<std::string> of_tracks{
         "aircraft", "sortie", "recording", "exclude", "keep", "correct-idle-offset", "messages"};
+    static const std::set<std::string> of_failsafes{"reserve", "home-distance", "home-course",
+                                                    "wind",    "airspeed",      "probability"};
+    static const std::set<std::string> of_inav{"cells", "reserve",  "home-distance", "home-course",
+                                               "wind",  "airspeed", "probability"};
     static const std::vector<Format> all{
         {"geojson", ".geojson", {flight}, of_tracks},
         {"kml", ".kml", {flight}, of_tracks},
@@ -87,6 +101,10 @@ const std::vector<Format>& formats() {
         {"ardupilot-sitl", ".parm", of_aircraft, {}, exchange::to_ardupilot_sitl},
         {"px4-sitl", "", of_aircraft, {"cells"}, exchange::to_px4_sitl},
         {"gazebo", ".sdf", of_aircraft, {}, exchange::to_gazebo},
+        {"failsafe-ardupilot", "", of_aircraft, of_failsafes, nullptr, exchange::to_failsafe_ardupilot},
+        {"failsafe-px4", "", of_aircraft, of_failsafes, nullptr, exchange::to_failsafe_px4},
+        {"failsafe-inav", "", of_aircraft, of_inav, nullptr, exchange::to_failsafe_inav},
+        {"failsafe-paparazzi", "", of_aircraft, of_failsafes, nullptr, exchange::to_failsafe_paparazzi},
         {"latex", ".tex", {model, battery, mission, batch}, {"replay", "capacity"}}};
     return all;
 }
@@ -152,7 +170,7 @@ void require_few(const std::vector<ExportInput>& inputs, const Format& format) {
         return static_cast<std::size_t>(std::ranges::count(inputs, kind, &ExportInput::kind));
     };
     const bool is_latex = format.name == "latex";
-    const bool is_of_both = format.write && format.kinds.contains(model);
+    const bool is_of_both = format.writes_parameters() && format.kinds.contains(model);
     const bool are_tables = is_latex && of_kind(batch) <= 1 && of_kind(batch) + of_kind(mission) == inputs.size();
     const bool are_both = is_of_both && inputs.size() == 2 && of_kind(model) == 1 && of_kind(battery) == 1;
     if (inputs.size() == 1 || are_tables || are_both) return;
@@ -168,12 +186,14 @@ struct Exported {
     std::vector<std::string> notes = {};
     std::vector<std::string> inputs = {};
     std::string format = {};
+    std::optional<answer::FailsafeCard> failsafe = {};
 };
 
 Fields<Exported> record_fields(const Exported*) {
     using R = Exported;
     return {field("inputs", &R::inputs, "files"), field("export_format", &R::format, "format, as of `--format`"),
-            field("notes", &R::notes, "what is missing or assumed")};
+            field("notes", &R::notes, "what is missing or assumed"),
+            field("failsafe", &R::failsafe, "card of the formats failsafe-...", optional_key{})};
 }
 
 Exported export_track(const cli::StageCall& call, const ExportArguments& arguments, const std::string& file,
@@ -236,6 +256,38 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::E
     return result;
 }
 
+constexpr double max_wind_m_per_s = 100.0;
+constexpr double degree_per_turn = 360.0;
+
+/// "6@250": 6 m/s from 250 degrees; without a direction it matters only where the course home is given.
+path::Wind parse_wind(const std::string& text, bool needs_direction) {
+    const auto at = text.find('@');
+    path::Wind wind;
+    wind.speed_m_per_s = number_or_nan(text.substr(0, at));
+    if (at != std::string::npos) wind.from_deg = number_or_nan(text.substr(at + 1));
+    if (wind.speed_m_per_s >= 0.0 && wind.speed_m_per_s <= max_wind_m_per_s &&
+        std::abs(wind.from_deg) <= degree_per_turn && (at != std::string::npos || !needs_direction))
+        return wind;
+    throw UsageError(fmt::format("--wind {}: expected SPEED@DEG in m/s and degrees, such as 6@250{}", text,
+                                 needs_direction ? "" : ", or SPEED alone"));
+}
+
+Exported export_failsafe(const ExportArguments& arguments, const exchange::EstimatorInput& input, const Format& to) {
+    if (!input.model || !input.battery)
+        throw UsageError(fmt::format("{} is made of a model and a battery, or of a mission", to.name));
+    auto request = arguments.failsafe;
+    request.model = *input.model;
+    request.battery = *input.battery;
+    request.compute_w = input.compute_w;
+    if (!request.reserve_percent) request.reserve_percent = input.reserve_percent;
+    if (arguments.wind) request.wind = parse_wind(*arguments.wind, request.home_course_deg.has_value());
+    const auto card = make_failsafe_card(request);
+    auto parameters = to.write_failsafe(input, card);
+    Exported result{std::move(parameters.text), std::move(parameters.notes)};
+    result.failsafe = card;
+    return result;
+}
+
 Exported export_latex(const cli::StageCall& call, const ExportArguments& arguments,
                       const std::vector<ExportInput>& inputs) {
     const auto& [file, kind] = inputs.front();
@@ -269,6 +321,7 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
                   const Format& to) {
     const auto& format = to.name;
     const auto& file = inputs.front().file;
+    if (to.write_failsafe) return export_failsafe(arguments, estimator_input(call, arguments.estimator, inputs), to);
     if (to.write) {
         auto parameters = to.write(estimator_input(call, arguments.estimator, inputs));
         return {std::move(parameters.text), std::move(parameters.notes)};
@@ -307,9 +360,10 @@ int flightwatt::stages::export_stage(int argc, char** argv) {
         R"(Writes the formats of other programs. Of a log or series: its track (geojson, kml, gpx), or columns over time
 (csv, for PlotJuggler). Of models: json, a header for C99 (c), and, from a model and a battery or from a mission, the
 parameters of autopilots' estimators (px4, inav, paparazzi, paparazzi-map) and of simulated batteries (ardupilot-sitl,
-px4-sitl, gazebo). Of models, missions and the folder OUT of flightwatt batch: tables (latex). The form is that of
-FILE's ending (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .parm: ardupilot-sitl, .sdf: gazebo, .tex) or of
---format.)"};
+px4-sitl, gazebo), and their battery failsafes, from the charge that the way home needs (failsafe-ardupilot,
+failsafe-px4, failsafe-inav, failsafe-paparazzi). Of models, missions and the folder OUT of flightwatt batch: tables
+(latex). The form is that of FILE's ending (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .parm: ardupilot-sitl,
+.sdf: gazebo, .tex) or of --format.)"};
     stage.next = [](const auto& call) {
         const auto ending = std::filesystem::path(*call.output).extension();
         if (ending == ".sdf") return "paste it into the <model> of the aircraft";
@@ -317,8 +371,9 @@ FILE's ending (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .parm: ardup
         return ending == ".csv" ? "plotjuggler -d {}" : "";
     };
     stage.json_schema = cli::document_schema<Exported>;
-    stage.examples = {"flightwatt export flight.data -o flight.kml",
-                      "flightwatt export model.toml pack.toml --format px4"};
+    stage.examples = {
+        "flightwatt export flight.data -o flight.kml", "flightwatt export model.toml pack.toml --format px4",
+        "flightwatt export model.toml pack.toml --format failsafe-ardupilot --home-distance 1500 --wind 6"};
     stage.reads_logs = stage.uses_threads = true;
     ExportArguments arguments;
     arguments.load.flight_required = arguments.load.power_required = false;
@@ -339,6 +394,27 @@ FILE's ending (.geojson, .kml, .gpx, .csv, .json, .h, .params: px4, .parm: ardup
                              "of latex: of the flights' battery; default: the estimate of flightwatt battery");
     options.add("replay", arguments.with_replay,
                 "of latex: also fly the missions on the flights of OUT (flightwatt replay)");
+    constexpr double max_percent = 100.0;
+    constexpr double max_distance_m = 1e6;
+    constexpr double min_probability = 0.5;
+    auto& card = arguments.failsafe;
+    options.begin_group("Battery failsafes (failsafe-...)");
+    options.add("reserve", card.reserve_percent,
+                {.value = "PERCENT", .min = 0.0, .max = max_percent, .below_max = true, .unit = "%"},
+                "charge to be left at landing; default: the mission's, else 20 %");
+    options.add("home-distance", card.home_distance_m,
+                {.value = "M", .min = 0.0, .max = max_distance_m, .above_min = true, .unit = "m"},
+                "the farthest place from which to return; without it there is no value to return by");
+    options.add("wind", arguments.wind, {.value = "SPEED@DEG"},
+                "in m/s, and degrees from which: 6@250; it blows from home, unless --home-course is given");
+    options.add("home-course", card.home_course_deg,
+                {.value = "DEG", .min = -degree_per_turn, .max = degree_per_turn, .unit = "degrees"},
+                "the course home, if there is only one");
+    options.add("airspeed", card.airspeed_m_per_s,
+                {.value = "M_PER_S", .min = 0.0, .max = max_wind_m_per_s, .above_min = true, .unit = "m/s"},
+                "on the way home; default: the mean cruise of a physical model");
+    options.add("probability", card.probability, {.value = "P", .min = min_probability, .max = 1.0, .below_max = true},
+                "with which an action is early enough");
     cli::add_flight_options(options, arguments.load);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return export_inputs(call, arguments); });
 }

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "battery/landing_forecast.h"
 #include "exchange/estimators/pack_summary.h"
+#include "exchange/estimators/px4_lines.h"
 
 #include <fmt/format.h>
 
@@ -22,21 +23,6 @@ void require_up_to(double value, double max, const char* name, const char* unit)
     if (value <= max) return;
     throw InputError({}, fmt::format("{} would be {:.4g} {}: PX4 takes up to {:g}", name, value, unit, max),
                      "are battery, model and number of cells (--cells) those of one aircraft?");
-}
-
-/// MAV_PARAM_TYPE of MAVLink.
-enum class ParameterType { int32 = 6, real32 = 9 };
-
-std::string px4_line(const char* name, double value, ParameterType type = ParameterType::real32) {
-    const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
-    return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
-}
-
-std::string px4_head(const char* reader) {
-    return fmt::format("# Written by flightwatt export " FLIGHTWATT_VERSION
-                       ", for {} and QGroundControl\n"
-                       "# Vehicle-Id Component-Id Name Value Type\n",
-                       reader);
 }
 
 std::string cells_line(const PackSummary& pack) {

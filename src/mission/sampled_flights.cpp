@@ -125,6 +125,30 @@ MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturban
     return flights;
 }
 
+DrawnFlights draw_flights(const MissionSetup& mission, const SamplingOptions& options) {
+    require_samples(options);
+    const auto spreads = collect_uncertainty(mission);
+    DrawnFlights drawn{
+        {}, spreads.sources, has_known_probability(mission), energy_degrees_of_freedom(mission, spreads)};
+    const auto normal_count = count_normals(mission);
+    auto flight = mission;
+    for (std::size_t i = 0; i < options.samples; ++i) {
+        apply_draw(mission, spreads, draw_normals(normal_count, options.seed, i), flight);
+        auto& loads = drawn.flights.emplace_back();
+        loads.battery = flight.battery;
+        loads.duration_s = flight.duration_s;
+        loads.is_infeasible = flight.cruise_path && flight.cruise_path->is_infeasible;
+        for (const auto phase : all_phases)
+            if (flight.duration_s[phase] > 0.0) loads.power_w[phase] = mean_level_w(flight, phase);
+    }
+    return drawn;
+}
+
+Interval share_of_new_flights_95(double share, const DrawnFlights& drawn) {
+    return interval_of_share(wilson_interval(share, static_cast<double>(drawn.flights.size())),
+                             drawn.degrees_of_freedom);
+}
+
 std::string describe(const MonteCarloResult& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     const double cut_off = flights.probability_battery_failure - flights.probability_depleted;

@@ -23,6 +23,30 @@ struct SamplingOptions {
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options);
 
+/// A drawn flight with its mean powers, for forecasts of charge.
+struct DrawnLoads {
+    battery::Battery battery;
+    PerPhase<double> power_w;  ///< mean mechanical power; 0 in a phase that is not flown
+    PerPhase<double> duration_s;
+    bool is_infeasible = false;  ///< its wind forbids the path
+};
+
+/// Flights as sample_flights draws them, not flown.
+struct DrawnFlights {
+    std::vector<DrawnLoads> flights;
+    UncertaintySources sources;
+    bool variability_is_known = true;  ///< as MonteCarloResult's
+    double degrees_of_freedom = 0.0;   ///< of their mechanical energy; infinite: normal
+};
+
+/// Draws flights of a mission with a mechanical model, which may have no variability. Throws UsageError as
+/// sample_flights.
+DrawnFlights draw_flights(const MissionSetup& mission, const SamplingOptions& options);
+
+/// Returns the 95 % interval of the fraction of new flights that has a property which `share` of the drawn ones has, by
+/// their number and by the few flights that show how flights differ.
+Interval share_of_new_flights_95(double share, const DrawnFlights& drawn);
+
 /// Text for people.
 std::string describe(const MonteCarloResult& flights);
 

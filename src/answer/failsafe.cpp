@@ -1,0 +1,405 @@
+#include "answer/failsafe.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "battery/landing_forecast.h"
+#include "mechanical/prediction.h"
+#include "mission/sampled_flights.h"
+#include "path/trajectory.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace flightwatt::answer {
+namespace {
+
+using mission::DrawnLoads;
+using enum mission::Phase;
+
+constexpr double full_percent = units::percent_per_whole;
+constexpr std::uint64_t seed = 20;           // fixed: the same request has the same card
+constexpr std::size_t drawn_flights = 2000;  // standard error of a chance of 5 %: 0.5 points
+constexpr double whole_step = 1e-9;  // of a rounding up, for numbers that are whole but for the computer's error
+
+double rounded_up(double value, double steps_per_unit = 1.0) {
+    return std::ceil(value * steps_per_unit - whole_step) / steps_per_unit;
+}
+
+/// The pack in a settled load, whose RC pair is a resistance in series.
+battery::Battery settled(battery::Battery battery) {
+    if (!battery.thevenin) return battery;
+    battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
+    battery.thevenin->rc_resistance_ohm = 0.0;
+    return battery;
+}
+
+double settled_current_a(const battery::Battery& pack, double soc_percent, double power_w) {
+    return limited_current_a(pack, power_w, {soc_percent, 0.0});
+}
+
+double loaded_voltage_v(const battery::Battery& pack, double soc_percent, double power_w) {
+    const auto at = std::clamp(soc_percent, 0.0, full_percent);
+    return terminal_voltage_v(pack, {at, 0.0}, settled_current_a(pack, at, power_w));
+}
+
+/// A drawn flight that is ready for forecasts.
+struct Draw {
+    DrawnLoads loads;
+    battery::Battery settled_pack;
+    double cruise_w = 0.0;
+    double landing_w = 0.0;
+};
+
+/// The charge after loads from a charge in cruise; below 0 where the pack failed.
+double soc_after(const Draw& draw, double soc_percent, std::span<const battery::ConstantLoad> ahead) {
+    const auto& pack = draw.loads.battery;
+    battery::BatteryState state{soc_percent, 0.0};
+    if (pack.thevenin)
+        state.rc_voltage_v =
+            pack.thevenin->rc_resistance_ohm * settled_current_a(draw.settled_pack, soc_percent, draw.cruise_w);
+    for (const auto& load : ahead) {
+        const auto end = discharge_constant_load(pack, state, load, 0.0);
+        if (end.failed_at_s()) return -1.0;
+        state = end;
+    }
+    return state.soc_percent;
+}
+
+/// The loads of an action.
+std::vector<battery::ConstantLoad> loads_of(const Draw& draw, bool is_return) {
+    std::vector<battery::ConstantLoad> loads;
+    if (is_return) loads.push_back({draw.cruise_w, draw.loads.duration_s[cruise]});
+    if (draw.loads.duration_s[landing] > 0.0) loads.push_back({draw.landing_w, draw.loads.duration_s[landing]});
+    return loads;
+}
+
+/// The least charge [%] that ends with `keep_percent`; above 100 where none does.
+double needed_percent(const Draw& draw, bool is_return, double keep_percent) {
+    constexpr double never = 1e3;
+    constexpr int halvings = 16;  // to 0.002 points
+    const auto loads = loads_of(draw, is_return);
+    if (is_return && draw.loads.is_infeasible) return never;
+    if (soc_after(draw, full_percent, loads) < keep_percent) return never;
+    double low = keep_percent;
+    double high = full_percent;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = std::midpoint(low, high);
+        (soc_after(draw, middle, loads) < keep_percent ? low : high) = middle;
+    }
+    return high;
+}
+
+/// Draws of a mission, and what all of them share.
+struct Fleet {
+    mission::DrawnFlights drawn;
+    std::vector<Draw> draws;
+    bool chances_known = true;
+    battery::Battery pack;  ///< as stated, settled
+    double cruise_w = 0.0;  ///< of the mission
+    double capacity_ah = 0.0;
+
+    template <typename Holds>
+    double share_of(const Holds& holds) const {
+        double count = 0.0;
+        for (std::size_t i = 0; i < draws.size(); ++i) count += holds(i) ? 1.0 : 0.0;
+        return count / static_cast<double>(draws.size());
+    }
+    /// The chance that something holds; absent where it is unknown.
+    template <typename Holds>
+    std::optional<double> chance_of(const Holds& holds) const {
+        return chances_known ? std::optional(share_of(holds)) : std::nullopt;
+    }
+    /// The true charge [%] of a draw when the count has used that much.
+    double true_percent(std::size_t draw, double used_ah) const {
+        return full_percent - units::percentage(used_ah, draws[draw].loads.battery.capacity_ah);
+    }
+};
+
+VoltageThreshold voltage_threshold(const Fleet& fleet, double voltage_v, double used_ah,
+                                   const std::vector<double>& needed_v) {
+    constexpr double steps_per_v = 100.0;
+    VoltageThreshold threshold{rounded_up(voltage_v, steps_per_v), {}, {}};
+    const double early_ah = used_ah - units::amount_from_percent(fleet.capacity_ah, early_points);
+    threshold.too_late = fleet.chance_of([&](std::size_t i) { return needed_v[i] > threshold.voltage_v; });
+    threshold.too_early = fleet.chance_of([&](std::size_t i) {
+        const auto& draw = fleet.draws[i];
+        return early_ah > 0.0 && loaded_voltage_v(draw.settled_pack, fleet.true_percent(i, early_ah), draw.cruise_w) <
+                                     threshold.voltage_v;
+    });
+    return threshold;
+}
+
+/// The threshold of an action, or none where the full pack does not suffice with that probability.
+std::optional<FailsafeAction> make_action(const Fleet& fleet, bool is_return, double keep_percent, double probability) {
+    constexpr double least_mah = 1.0;  // 0 switches failsafes off
+    std::vector<double> needed;
+    std::vector<double> usable_ah;  // when the action has to begin
+    std::vector<double> needed_v;
+    for (const auto& draw : fleet.draws) {
+        needed.push_back(needed_percent(draw, is_return, keep_percent));
+        usable_ah.push_back(units::amount_from_percent(draw.loads.battery.capacity_ah, full_percent - needed.back()));
+        needed_v.push_back(needed.back() > full_percent
+                               ? std::numeric_limits<double>::max()
+                               : loaded_voltage_v(draw.settled_pack, needed.back(), draw.cruise_w));
+    }
+    auto sorted = usable_ah;
+    std::ranges::sort(sorted);
+    const double usable = quantile(sorted, 1.0 - probability);
+    const double capacity_mah = fleet.capacity_ah / units::milli;
+    const double remaining_mah = rounded_up(std::max(least_mah, capacity_mah - usable / units::milli));
+    if (remaining_mah > capacity_mah) return std::nullopt;
+    FailsafeAction action;
+    action.remaining_mah = static_cast<int>(std::lround(remaining_mah));
+    action.used_mah = static_cast<int>(std::floor(capacity_mah - remaining_mah));
+    action.soc_percent = static_cast<int>(std::lround(rounded_up(units::percentage(remaining_mah, capacity_mah))));
+    const double used_ah = fleet.capacity_ah - remaining_mah * units::milli;
+    const double soc_percent = units::percentage(remaining_mah, capacity_mah);
+    action.current_a = settled_current_a(fleet.pack, soc_percent, fleet.cruise_w);
+    action.too_late = fleet.chance_of([&](std::size_t i) { return usable_ah[i] < used_ah; });
+    if (action.too_late) action.too_late_95 = share_of_new_flights_95(*action.too_late, fleet.drawn);
+    if (!fleet.pack.thevenin) return action;
+    action.voltage =
+        voltage_threshold(fleet, loaded_voltage_v(fleet.pack, soc_percent, fleet.cruise_w), used_ah, needed_v);
+    auto sorted_v = needed_v;
+    std::ranges::sort(sorted_v);
+    if (const double alone_v = quantile(sorted_v, probability); alone_v < std::numeric_limits<double>::max() / 2.0)
+        action.voltage_alone = voltage_threshold(fleet, alone_v, used_ah, needed_v);
+    return action;
+}
+
+/// The way home, or why it is not known.
+struct WayHome {
+    std::optional<double> distance_m = {};
+    double airspeed_m_per_s = 0.0;
+    double ground_speed_m_per_s = 0.0;
+    path::Wind wind = {};
+    double course_deg = 0.0;
+    std::string missing = {};
+};
+
+WayHome way_home(const FailsafeRequest& request) {
+    WayHome way;
+    way.distance_m = request.home_distance_m ? request.home_distance_m : request.flown_distance_m;
+    way.wind = request.wind;
+    way.course_deg = request.home_course_deg.value_or(0.0);
+    if (!request.home_course_deg) way.wind.from_deg = way.course_deg;
+    const auto& physical = request.model.physical;
+    way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(physical ? physical->mean_airspeed_m_per_s : 0.0);
+    if (!way.distance_m) {
+        way.missing = "the distance to home is not known: state it (in m)";
+    } else if (!(way.airspeed_m_per_s > 0.0)) {
+        way.missing = "the model has no airspeed: state that of the way home (in m/s)";
+    } else if (const auto speed = ground_speed_m_per_s(way.airspeed_m_per_s, way.course_deg, way.wind)) {
+        way.ground_speed_m_per_s = *speed;
+    } else {
+        way.missing = fmt::format("{:.1f} m/s of airspeed make no way home in a wind of {:.1f} m/s",
+                                  way.airspeed_m_per_s, way.wind.speed_m_per_s);
+    }
+    return way;
+}
+
+/// The flights' mean cruise power over a duration.
+mechanical::ConstantPower measured_cruise(const mechanical::MechanicalModel& model, double duration_s) {
+    const auto forecast = forecast_of(model, cruise);
+    const auto& curve = model.phases[cruise];
+    mechanical::ConstantPower power{energy_j(curve.fourier, curve.duration_s) / curve.duration_s, std::nullopt, 0.0};
+    if (!curve.level_spread) return power;
+    const auto& spread = *curve.level_spread;
+    const double between_w2 = std::pow(spread.between_flight_sd_w, 2) * (1.0 + forecast.weight_square_sum);
+    const double drift_w2 = spread.drift_sd_w > 0.0 && spread.correlation_s > 0.0
+                                ? mechanical::variance_of_mean_w2({spread.drift_sd_w, spread.correlation_s}, duration_s)
+                                : 0.0;
+    power.sd_w = std::sqrt(between_w2 + drift_w2);
+    power.degrees_of_freedom = static_cast<double>(spread.flights - 1);
+    if (between_w2 > 0.0) power.degrees_of_freedom *= std::pow((between_w2 + drift_w2) / between_w2, 2);
+    return power;
+}
+
+/// The flights' mean cruise power, whatever the motion.
+mechanical::PhysicalModel constant_power(const mechanical::MechanicalModel& model) {
+    mechanical::PhysicalModel power;
+    power.terms = {mechanical::PowerTerm::constant};
+    power.coefficients[mechanical::PowerTerm::constant] = measured_cruise(model, 0.0).mean_w;
+    power.covariance = {{0.0}};
+    return power;
+}
+
+/// A mission of the way home and the landing.
+mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHome& way) {
+    constexpr double least_m = 1.0;
+    mission::MissionSetup setup;
+    setup.name = "return";
+    setup.mechanical = request.model;
+    setup.battery = request.battery;
+    setup.duration_s[landing] = request.model.phases[landing].duration_s;
+    const double distance_m = std::max(way.distance_m.value_or(0.0), least_m);
+    if (way.missing.empty()) {
+        path::PathElement leg;
+        leg.shape = path::Leg{distance_m, way.course_deg};
+        leg.airspeed_m_per_s = way.airspeed_m_per_s;
+        leg.name = "the way home";
+        set_cruise_path(setup, {{{leg}}, way.wind, request.model.physical.value_or(constant_power(request.model))});
+        if (!request.model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
+        return setup;
+    }
+    setup.duration_s[cruise] = request.model.phases[cruise].duration_s;
+    setup.duration_is_stated[cruise] = true;
+    setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
+    auto& curve = setup.mechanical->phases[cruise].fourier;
+    curve.a0_w = setup.cruise_level->mean_w;
+    curve.cos_w.clear();
+    curve.sin_w.clear();
+    return setup;
+}
+
+Fleet make_fleet(const FailsafeRequest& request, const WayHome& way) {
+    auto setup = return_mission(request, way);
+    Fleet fleet;
+    fleet.drawn = draw_flights(setup, {drawn_flights, seed, 0});
+    fleet.chances_known = fleet.drawn.variability_is_known;
+    if (!fleet.chances_known) {
+        for (const auto phase : {cruise, landing}) setup.uncertainty.level_sd_percent[phase] = assumed_level_sd_percent;
+        fleet.drawn = draw_flights(setup, {drawn_flights, seed, 0});
+    }
+    for (const auto& loads : fleet.drawn.flights)
+        fleet.draws.push_back({loads, settled(loads.battery), loads.power_w[cruise] + request.compute_w,
+                               loads.power_w[landing] + request.compute_w});
+    fleet.pack = settled(request.battery);
+    fleet.capacity_ah = request.battery.capacity_ah;
+    fleet.cruise_w =
+        (setup.cruise_path ? mean_power_w(*setup.cruise_path) : setup.cruise_level->mean_w) + request.compute_w;
+    return fleet;
+}
+
+/// Returns whether the critical action comes before the end of a return that began by the low action.
+bool is_landed_short(const Fleet& fleet, std::size_t i, double used_ah, double critical_used_ah) {
+    const auto& draw = fleet.draws[i];
+    if (draw.loads.is_infeasible) return true;
+    const std::array way{battery::ConstantLoad{draw.cruise_w, draw.loads.duration_s[cruise]}};
+    const double start = fleet.true_percent(i, used_ah);
+    return start <= 0.0 || soc_after(draw, start, way) < fleet.true_percent(i, critical_used_ah);
+}
+
+std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHome& way, const Fleet& fleet,
+                                     double reserve_percent) {
+    std::vector<GroundedPart> grounds;
+    const auto add = [&](Ground ground, std::string text) { grounds.push_back({ground, std::move(text)}); };
+    const auto& phases = request.model.phases;
+    const auto& physical = request.model.physical;
+    if (way.missing.empty()) {
+        add(request.home_distance_m ? Ground::assumption : Ground::measured,
+            fmt::format("distance: {:.0f} m, {}", *way.distance_m,
+                        request.home_distance_m ? "as stated" : "the largest from the start in the flights"));
+        const auto& wind = way.wind;
+        add(Ground::assumption,
+            wind.speed_m_per_s > 0.0
+                ? fmt::format("wind: {:g} m/s {} all the way home", wind.speed_m_per_s,
+                              request.home_course_deg ? fmt::format("from {:g} degrees", wind.from_deg)
+                                                      : std::string("from ahead, the worst,"))
+                : std::string("wind: calm, as none is stated"));
+        if (physical) {
+            const bool is_flown = is_within_flown_range(*physical, {way.airspeed_m_per_s, 0.0, 1.0});
+            add(Ground::physics,
+                fmt::format("power on the way home: {:.1f} W, by the physical model at {:.1f} m/s{}", fleet.cruise_w,
+                            way.airspeed_m_per_s, is_flown ? "" : ", outside of the airspeeds flown"));
+        } else {
+            add(Ground::assumption, fmt::format("power on the way home: {:.1f} W, the mean cruise of the flights, "
+                                                "whatever the airspeed; {:.1f} m/s over ground",
+                                                fleet.cruise_w, way.ground_speed_m_per_s));
+        }
+    }
+    add(Ground::measured,
+        fmt::format("landing: {:.0f} s at {:.1f} W, the mean of the flights", phases[landing].duration_s,
+                    energy_j(phases[landing].fourier, phases[landing].duration_s) / phases[landing].duration_s +
+                        request.compute_w));
+    add(Ground::assumption, fmt::format("reserve: {:g} %, {}; the critical action keeps {:g} %", reserve_percent,
+                                        request.reserve_percent ? "as stated" : "as none is stated",
+                                        critical_reserve_part * reserve_percent));
+    if (fleet.chances_known)
+        add(Ground::measured, "chances: drawn as the model's flights and the pack's intervals differ");
+    else
+        add(Ground::assumption, fmt::format("chances: unknown, as the model does not show how flights differ; the "
+                                            "values assume a standard deviation of {:g} % of the power",
+                                            assumed_level_sd_percent));
+    add(Ground::assumption, "pack: full at power-on, its charge counted by a calibrated sensor");
+    return grounds;
+}
+
+std::string chance_text(const std::optional<double>& chance) {
+    return chance ? fmt::format("{:.1f} %", units::percent_per_whole * *chance) : std::string("unknown");
+}
+
+std::string describe(const std::string& name, const FailsafeAction& action) {
+    auto text = fmt::format("{} at {} % of charge: {} mAh left, {} mAh used; too late: {}", name, action.soc_percent,
+                            action.remaining_mah, action.used_mah, chance_text(action.too_late));
+    if (action.too_late_95)
+        text += fmt::format(" of flights ({:.1f} to {:.1f} %)", units::percent_per_whole * action.too_late_95->low,
+                            units::percent_per_whole * action.too_late_95->high);
+    const auto add_voltage = [&](const std::string& use, const std::optional<VoltageThreshold>& voltage) {
+        if (voltage)
+            text += fmt::format("\n  {}: {:.2f} V; by itself too late: {}, {:g} points or more too early: {}", use,
+                                voltage->voltage_v, chance_text(voltage->too_late), early_points,
+                                chance_text(voltage->too_early));
+    };
+    add_voltage(fmt::format("voltage in addition to the count, at {:.1f} A", action.current_a), action.voltage);
+    add_voltage("voltage without a count", action.voltage_alone);
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string to_string(Ground ground) {
+    constexpr std::array names{"measured", "physics", "assumption"};
+    return names.at(static_cast<std::size_t>(ground));
+}
+
+FailsafeCard make_failsafe_card(const FailsafeRequest& request) {
+    const double reserve_percent = request.reserve_percent.value_or(assumed_reserve_percent);
+    if (!(request.probability >= 0.5 && request.probability < 1.0))
+        throw UsageError(fmt::format("a probability of {:g}: expected 0.5 to below 1", request.probability));
+    if (!(reserve_percent >= 0.0 && reserve_percent < full_percent))
+        throw UsageError(fmt::format("a reserve of {:g} %: expected 0 to below 100 %", reserve_percent));
+    const auto way = way_home(request);
+    const auto fleet = make_fleet(request, way);
+    FailsafeCard card;
+    card.capacity_mah = fleet.capacity_ah / units::milli;
+    card.reserve_percent = reserve_percent;
+    card.probability = request.probability;
+    card.chances_known = fleet.chances_known;
+    const auto critical = make_action(fleet, false, critical_reserve_part * reserve_percent, request.probability);
+    if (!critical) throw NoResultError("the full pack does not suffice to land with half of the reserve");
+    card.critical = *critical;
+    card.low_missing = way.missing;
+    if (way.missing.empty()) {
+        card.home_distance_m = way.distance_m;
+        card.home_duration_s = *way.distance_m / way.ground_speed_m_per_s;
+        card.low = make_action(fleet, true, reserve_percent, request.probability);
+        if (!card.low) card.low_missing = "the full pack does not suffice to return from there with the reserve";
+    }
+    if (card.low) {
+        const double used_ah = fleet.capacity_ah - card.low->remaining_mah * units::milli;
+        const double critical_ah = fleet.capacity_ah - card.critical.remaining_mah * units::milli;
+        card.lands_short =
+            fleet.chance_of([&](std::size_t i) { return is_landed_short(fleet, i, used_ah, critical_ah); });
+    }
+    if (fleet.pack.thevenin) card.empty_voltage_v = loaded_voltage_v(fleet.pack, 0.0, fleet.cruise_w);
+    card.grounds = grounds_of(request, way, fleet, reserve_percent);
+    return card;
+}
+
+std::string describe(const FailsafeCard& card) {
+    auto text = card.low ? describe("Return", *card.low) : fmt::format("Return: no value, {}\n", card.low_missing);
+    text += describe("Land at once", card.critical);
+    if (card.low)
+        text += fmt::format("The return ends before home, by the critical action: {}\n", chance_text(card.lands_short));
+    for (const auto& [ground, part] : card.grounds) text += fmt::format("{}: {}\n", to_string(ground), part);
+    return text;
+}
+
+}  // namespace flightwatt::answer
