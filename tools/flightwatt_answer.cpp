@@ -37,6 +37,8 @@ struct AnswerArguments {
     cli::BatchArguments batch;
     answer::Question question;
     std::optional<double> capacity_ah;
+    std::optional<std::string> wind;
+    std::optional<double> home_distance_m;
     std::optional<std::string> table;
     bool no_page = false;
 };
@@ -73,6 +75,30 @@ answer::Answered prediction_error(const mechanical::MechanicalModel& model) {
                                      fmt::format("{} flights, each left out", score.flights));
     return answer::unknown(model.flights.size() == 1 ? "a second flight would show how well the first predicts it"
                                                      : "the flights do not predict each other");
+}
+
+/// The values of a failsafe for the mission of the question, or why there are none.
+void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
+                  const mission::MissionSetup& mission, cli::AircraftAnswer& answer) {
+    if (!aircraft.pack.capacity_ah.value) {
+        answer.failsafe_missing = aircraft.pack.capacity_ah.unknown;
+        return;
+    }
+    answer::FailsafeRequest request{.model = mission.mechanical.value(), .battery = mission.battery};
+    request.reserve_percent = arguments.question.reserve_soc_percent;
+    request.home_distance_m = arguments.home_distance_m;
+    for (const auto& flight : aircraft.flights)
+        request.flown_distance_m = std::max(request.flown_distance_m, flight.farthest_m);
+    request.wind.speed_m_per_s = arguments.question.wind_m_per_s;
+    request.airspeed_m_per_s = arguments.question.airspeed_m_per_s;
+    if (!request.airspeed_m_per_s) request.airspeed_m_per_s = answer.endurance.airspeed_m_per_s.value;
+    try {
+        answer.failsafe = make_failsafe_card(request);
+    } catch (const NoResultError& error) {
+        answer.failsafe_missing = error.what();
+    } catch (const InputError& error) {
+        answer.failsafe_missing = error.what();
+    }
 }
 
 /// Writes the report of a folder and its mission; returns its name.
@@ -132,8 +158,13 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     answer.prediction_error_percent = prediction_error(model);
     const auto mission_file = folder / "mission.toml";
     write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, "mission"));
-    if (!arguments.no_page && answer.endurance.power_w.value)
-        answer.page = write_page(call, folder, mission::read_mission(mission_file));
+    if (!answer.endurance.power_w.value) {
+        answer.failsafe_missing = answer.endurance.power_w.unknown;
+        return;
+    }
+    const auto mission = mission::read_mission(mission_file);
+    add_failsafe(arguments, aircraft, setup_of(mission), answer);
+    if (!arguments.no_page) answer.page = write_page(call, folder, mission);
 }
 
 /// The same; what stands in the way is the answer.
@@ -262,12 +293,20 @@ one with the most flights; --each answers for each of them.)"};
                 "mass of the aircraft as it flew, where the logs do not state it");
     options.add("airspeed", question.airspeed_m_per_s, {.value = "M/S", .min = 0.0, .max = 100.0},
                 "airspeed of the cruise; default: as flown");
-    options.add("wind", question.wind_m_per_s, {.value = "M/S", .min = 0.0, .max = 100.0},
-                "steady wind: distances are out and back along it, and a rotorcraft holds against it");
+    options.add(
+        "wind", arguments.wind, {.value = "SPEED@DEG"},
+        "steady wind in m/s, and the degrees that it comes from, which do not matter here: distances are out and "
+        "back along it, the way home is against it, and a rotorcraft holds its place in it");
+    options.add("home-distance", arguments.home_distance_m,
+                {.value = "M", .min = 0.0, .max = 1e6, .above_min = true, .unit = "m"},
+                "the farthest place from which the failsafe is to return; default: the farthest of the flights");
     options.add("table", arguments.table, cli::output_file("FILE.csv"), "write one row an aircraft to FILE");
     options.add("no-page", arguments.no_page, "write no page");
     cli::add_each_option(options, arguments.batch.flights, "answers for each aircraft, in a folder of its own");
     cli::add_filter_options(options, arguments.batch.filter);
     cli::add_flight_options(options, arguments.batch.flights);
-    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return answer_logs(call, arguments); });
+    return cli::run_stage(argc, argv, stage, [&](const auto& call) {
+        if (arguments.wind) question.wind_m_per_s = cli::parse_wind(*arguments.wind, false).speed_m_per_s;
+        return answer_logs(call, arguments);
+    });
 }

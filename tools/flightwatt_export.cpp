@@ -259,19 +259,6 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::E
 constexpr double max_wind_m_per_s = 100.0;
 constexpr double degree_per_turn = 360.0;
 
-/// "6@250": 6 m/s from 250 degrees; without a direction it matters only where the course home is given.
-path::Wind parse_wind(const std::string& text, bool needs_direction) {
-    const auto at = text.find('@');
-    path::Wind wind;
-    wind.speed_m_per_s = number_or_nan(text.substr(0, at));
-    if (at != std::string::npos) wind.from_deg = number_or_nan(text.substr(at + 1));
-    if (wind.speed_m_per_s >= 0.0 && wind.speed_m_per_s <= max_wind_m_per_s &&
-        std::abs(wind.from_deg) <= degree_per_turn && (at != std::string::npos || !needs_direction))
-        return wind;
-    throw UsageError(fmt::format("--wind {}: expected SPEED@DEG in m/s and degrees, such as 6@250{}", text,
-                                 needs_direction ? "" : ", or SPEED alone"));
-}
-
 Exported export_failsafe(const ExportArguments& arguments, const exchange::EstimatorInput& input, const Format& to) {
     if (!input.model || !input.battery)
         throw UsageError(fmt::format("{} is made of a model and a battery, or of a mission", to.name));
@@ -280,7 +267,7 @@ Exported export_failsafe(const ExportArguments& arguments, const exchange::Estim
     request.battery = *input.battery;
     request.compute_w = input.compute_w;
     if (!request.reserve_percent) request.reserve_percent = input.reserve_percent;
-    if (arguments.wind) request.wind = parse_wind(*arguments.wind, request.home_course_deg.has_value());
+    if (arguments.wind) request.wind = cli::parse_wind(*arguments.wind, request.home_course_deg.has_value());
     const auto card = make_failsafe_card(request);
     auto parameters = to.write_failsafe(input, card);
     Exported result{std::move(parameters.text), std::move(parameters.notes)};

@@ -1,5 +1,7 @@
 #include "answer/flight_facts.h"
 
+#include "base/units.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,15 +20,23 @@ std::optional<double> mean_between(const flight::Track& track, double start_s, d
     return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// The largest distance from the first position.
-std::optional<double> farthest_m(const flight::FlightData& data) {
-    if (data.east_m.empty() || data.north_m.empty()) return std::nullopt;
-    const auto north_m = resample(data.north_m, data.east_m.time_s);
+/// The largest distance from the first point of two tracks, whose values are so many metres each.
+double farthest_m(const flight::Track& east, const flight::Track& north, double east_m, double north_m) {
+    const auto norths = resample(north, east.time_s);
     double farthest = 0.0;
-    for (std::size_t i = 0; i < north_m.size(); ++i)
-        farthest = std::max(farthest,
-                            std::hypot(data.east_m.value[i] - data.east_m.value.front(), north_m[i] - north_m.front()));
+    for (std::size_t i = 0; i < norths.size(); ++i)
+        farthest = std::max(farthest, std::hypot((east.value[i] - east.value.front()) * east_m,
+                                                 (norths[i] - norths.front()) * north_m));
     return farthest;
+}
+
+/// The same of a log, by its positions in metres or in degrees, which a sphere converts within 1 %.
+std::optional<double> farthest_m(const flight::FlightData& data) {
+    constexpr double m_per_degree = 111195.0;
+    if (!data.east_m.empty() && !data.north_m.empty()) return farthest_m(data.east_m, data.north_m, 1.0, 1.0);
+    if (data.latitude_deg.empty() || data.longitude_deg.empty()) return std::nullopt;
+    const double parallel = std::cos(data.latitude_deg.value.front() / units::degree_per_rad);
+    return farthest_m(data.longitude_deg, data.latitude_deg, m_per_degree * parallel, m_per_degree);
 }
 
 }  // namespace

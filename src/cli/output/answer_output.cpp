@@ -1,6 +1,7 @@
 #include "cli/output/answer_output.h"
 
 #include "base/text.h"
+#include "cli/output/failsafe_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/screen/diagnostic_lines.h"
 
@@ -86,8 +87,8 @@ std::string speeds_line(const Endurance& endurance) {
         if (best.airspeed_m_per_s && !best.below_flown && !best.above_flown)
             texts.push_back(fmt::format("{} at {}", best.purpose, speed_text(*best.airspeed_m_per_s)));
         else
-            texts.push_back(fmt::format("{} unknown: {} legs would show it", best.purpose,
-                                        best.above_flown ? "faster" : "slower"));
+            texts.push_back(
+                fmt::format("{} unknown: {} legs would show it", best.purpose, best.above_flown ? "faster" : "slower"));
     }
     return fmt::format("{}", fmt::join(texts, "; "));
 }
@@ -103,6 +104,30 @@ std::string pack_line(const PackAnswer& pack) {
     if (const auto& interval = pack.resistance_interval_ohm)
         text += fmt::format(" ({:.3g} to {:.3g})", interval->low * mohm_per_ohm, interval->high * mohm_per_ohm);
     return text;
+}
+
+/// "return at 34 % (2040 mAh left, 22.10 V)".
+std::string action_text(const char* name, const answer::FailsafeAction& action) {
+    auto text = fmt::format("{} at {} % ({} mAh left", name, action.soc_percent, action.remaining_mah);
+    if (action.voltage) text += fmt::format(", {:.2f} V in cruise", action.voltage->voltage_v);
+    return text + ")";
+}
+
+std::string failsafe_line(const AircraftAnswer& answer) {
+    if (!answer.failsafe) return "unknown: " + answer.failsafe_missing;
+    const auto& card = *answer.failsafe;
+    auto text = card.low ? fmt::format("{} from {:.0f} m", action_text("return", *card.low), *card.home_distance_m)
+                         : "return unknown: " + card.low_missing;
+    text += "; " + action_text("land", card.critical);
+    if (!card.chances_known) text += "; chances unknown";
+    auto command =
+        fmt::format("flightwatt export {0}/model.toml {0}/pack.toml --format failsafe-ardupilot --reserve {1:g}",
+                    answer.folder, card.reserve_percent);
+    if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
+    if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
+    if (answer.endurance.airspeed_m_per_s.value)
+        command += fmt::format(" --airspeed {:.2f}", *answer.endurance.airspeed_m_per_s.value);
+    return text + "; written by " + command + " (or -px4, -inav, -paparazzi)";
 }
 
 }  // namespace
@@ -143,6 +168,8 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
         field("prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "", csv_column{},
               not_in_json{}),
+        field("failsafe", &R::failsafe, "values for an autopilot; null: unknown"),
+        field("failsafe_missing", &R::failsafe_missing, "why there are none"),
         field("notes", at(&R::endurance, &Endurance::notes), "doubts of these answers"),
         field("page", &R::page, "file of the report; empty without one"));
 }
@@ -167,6 +194,7 @@ std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
     add("Distance", distance_line(answer));
     add("Speeds", speeds_line(answer.endurance));
     add("Pack", pack_line(answer.pack));
+    add("Failsafe", failsafe_line(answer));
     const auto& error = answer.prediction_error_percent;
     add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,
                                              error.basis)

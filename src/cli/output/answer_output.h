@@ -1,6 +1,7 @@
 #pragma once
 
 #include "answer/answer.h"
+#include "answer/failsafe.h"
 #include "answer/pack_answer.h"
 #include "cli/stage.h"
 
@@ -26,8 +27,10 @@ struct AircraftAnswer {
     answer::Question question;
     answer::Endurance endurance;
     answer::PackAnswer pack;
-    answer::Answered prediction_error_percent;  ///< of the energy of flights left out
-    std::string page;                           ///< file of the report; empty without one
+    answer::Answered prediction_error_percent;     ///< of the energy of flights left out
+    std::optional<answer::FailsafeCard> failsafe;  ///< of the mission that is asked for
+    std::string failsafe_missing;                  ///< why there is none
+    std::string page;                              ///< file of the report; empty without one
 };
 Fields<AircraftAnswer> record_fields(const AircraftAnswer*);
 

@@ -1,5 +1,7 @@
 #include "cli/output/stage_options.h"
 
+#include "base/error.h"
+#include "base/number.h"
 #include "battery/battery.h"
 
 namespace flightwatt::cli {
@@ -68,6 +70,20 @@ std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arg
                                                     const mission::MissionSetup& mission) {
     return arguments.disturbances ? mission::read_disturbances(*arguments.disturbances, mission.duration_s)
                                   : std::vector<mission::Disturbance>();
+}
+
+path::Wind parse_wind(const std::string& text, bool needs_direction) {
+    constexpr double max_m_per_s = 100.0;
+    constexpr double degree_per_turn = 360.0;
+    const auto at = text.find('@');
+    path::Wind wind;
+    wind.speed_m_per_s = number_or_nan(text.substr(0, at));
+    if (at != std::string::npos) wind.from_deg = number_or_nan(text.substr(at + 1));
+    if (wind.speed_m_per_s >= 0.0 && wind.speed_m_per_s <= max_m_per_s && std::abs(wind.from_deg) <= degree_per_turn &&
+        (at != std::string::npos || !needs_direction))
+        return wind;
+    throw UsageError(fmt::format("--wind {}: expected SPEED@DEG in m/s and degrees, such as 6@250{}", text,
+                                 needs_direction ? "" : ", or SPEED alone"));
 }
 
 }  // namespace flightwatt::cli

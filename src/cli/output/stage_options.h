@@ -59,4 +59,8 @@ std::optional<mission::SamplingOptions> sampling_options(const SamplingArguments
 std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arguments,
                                                     const mission::MissionSetup& mission);
 
+/// The wind of --wind: "6@250" is 6 m/s from 250 degrees. Without a direction it is 0, unless `needs_direction`. Throws
+/// UsageError for another text.
+path::Wind parse_wind(const std::string& text, bool needs_direction);
+
 }  // namespace flightwatt::cli
