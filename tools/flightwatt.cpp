@@ -30,7 +30,7 @@ const std::vector<StageGroup>& stage_groups() {
          {{"answer", "how long and how far an aircraft flies, from its logs; `flightwatt LOG...` is the same",
            stages::answer_stage}}},
         {"Logs",
-         {{"init", "a folder for an aircraft, with the five commands from logs to a report", stages::init_stage},
+         {{"init", "a folder for an aircraft, with the four commands from logs to a report", stages::init_stage},
           {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
           {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
           {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},

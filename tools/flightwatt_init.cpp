@@ -29,11 +29,11 @@ Fields<InitOutput> record_fields(const InitOutput*) {
 
 constexpr std::array<const char*, 3> folders{"logs", "fits", "missions"};
 
-/// The five commands, for make(1) or to be typed. A line that make runs begins with a tab.
+/// The four commands, for make(1) or to be typed. A line that make runs begins with a tab.
 std::string list_of_commands(const std::optional<double>& capacity_ah) {
     return fmt::format(
-        R"(# From logs to a report in five commands. `make` runs those that something newer asks for; they may be typed as well.
-# Put each flight's .data and .log into logs/ first.
+        R"(# From logs to a report in four commands. `make` runs those that something newer asks for; they may be typed as well.
+# Put the logs of your flights into logs/ first: .bin, .ulg, .data with its .log, CSV.
 
 report.html: missions/first.csv
 	flightwatt report fits missions/first.toml -o report.html
@@ -46,14 +46,11 @@ missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
 missions/first.toml: | fits/model.toml fits/pack.toml
 	flightwatt new-mission --model fits/model.toml --battery fits/pack.toml -o missions/first.toml
 
-# The battery that they flew on. --capacity is the value on its label [Ah], compared with the flights' estimate.
-# Without it, that estimate is used. All that follows takes the capacity from fits/pack.toml.
-fits/pack.toml: fits/model.toml $(firstword $(MAKEFILE_LIST))
-	flightwatt battery fits{} -o fits/pack.toml
-
-# Phases, energies, and the model of take-off, cruise and landing. Exit code 3: a log was skipped, the others were used.
-fits/model.toml: logs $(wildcard logs/*)
-	flightwatt batch logs -o fits || test $$? = 3
+# How long and how far it flies, the model, the pack and a page: fits/report.html. --capacity is the value on the pack's
+# label [Ah]; without it, that of the logs or an estimate is used. Exit code 3: a log was not used, the others were.
+fits/pack.toml: fits/model.toml
+fits/model.toml: logs $(wildcard logs/*) $(firstword $(MAKEFILE_LIST))
+	flightwatt logs{} -o fits || test $$? = 3
 )",
         capacity_ah ? fmt::format(" --capacity {}", *capacity_ah) : "");
 }
@@ -71,10 +68,10 @@ int make_folder(const cli::StageCall& call, const std::optional<double>& capacit
         cli::print_json(call, InitOutput{root, {folders.begin(), folders.end()}, list});
     } else {
         cli::print(fmt::format(
-            "{0}/logs      put each flight's .data and .log here\n"
+            "{0}/logs      put the logs of your flights here\n"
             "{0}/fits      models, and what was found of each flight\n"
             "{0}/missions  what is to be flown\n"
-            "{1}  the five commands from logs to report.html{2}\n",
+            "{1}  the four commands from logs to report.html{2}\n",
             root.string(), list.string(), call.output ? "" : ": make -C " + cli::shell_quoted(root.string())));
     }
     return cli::ok;
@@ -85,7 +82,7 @@ int make_folder(const cli::StageCall& call, const std::optional<double>& capacit
 int flightwatt::stages::init_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "init", "DIR",
-        R"(Lays out a folder for an aircraft: logs/, fits/, missions/, and a Makefile with the five commands that lead from
+        R"(Lays out a folder for an aircraft: logs/, fits/, missions/, and a Makefile with the four commands that lead from
 logs to a report. Folders that are there stay; a Makefile that is there is not replaced, and then nothing is
 made.)"};
     stage.json_schema = cli::document_schema<InitOutput>;
@@ -95,6 +92,6 @@ made.)"};
     std::optional<double> capacity_ah;
     cli::add_capacity_option(
         stage.options, capacity_ah,
-        "the capacity on the pack's label, for the command that identifies it; default: the flights' estimate");
+        "the capacity on the pack's label, for the command that answers; default: that of the logs, or the flights' estimate");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return make_folder(call, capacity_ah); });
 }
