@@ -102,6 +102,8 @@ struct FlightInfo {
     std::map<int, std::string> block_names;  ///< names of the values of the track "block"
     /// Kinds of battery monitors by the log's parameters, by id: sum_monitor or escs_monitor.
     std::map<std::string, std::string> monitor_kinds;
+    std::string pack_serial;            ///< of a smart battery, joined by "+" of several; empty if unknown
+    std::optional<double> pack_cycles;  ///< charge cycles that it counts; of several the most
     bool log_is_missing = false;  ///< the log has no .log
 
     std::vector<telemetry::AssumedDefinition> assumed_definitions;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
+#include <vector>
 
 /// Where PX4's ULog has the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
@@ -161,6 +163,25 @@ std::string vehicle_kind(const telemetry::AutopilotLog& log) {
     return rotary == nullptr ? "" : rotary->values.front() != 0.0 ? "rotorcraft" : "fixedwing";
 }
 
+/// The serial numbers and cycles of smart batteries, as the first message of each instance states them; its `id` is only
+/// a place in the vehicle.
+void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
+    const auto* status = sender.table("battery_status");
+    if (status == nullptr) return;
+    const auto* instance = status->column("multi_id");
+    const auto* serial = status->column("serial_number");
+    const auto* cycles = status->column("cycle_count");
+    std::set<double> seen;
+    std::vector<double> serials;
+    for (std::size_t row = 0; row < status->time_s.size(); ++row) {
+        if (!seen.insert(instance == nullptr ? 0.0 : instance->values[row]).second) continue;
+        if (serial != nullptr) serials.push_back(serial->values[row]);
+        if (cycles != nullptr && is_stated(cycles->values[row]))
+            series.pack_cycles = std::max(series.pack_cycles.value_or(0.0), cycles->values[row]);
+    }
+    series.pack_serial = joined_serials(serials);
+}
+
 void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     const auto& parameters = log.facts.parameters;
     const auto text_of = [&](const char* key) {
@@ -175,6 +196,7 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     else if (hitl != parameters.end() && hitl->second > 0.0)
         series.aircraft_name += " HITL";
     series.firmware = vehicle_kind(log);
+    add_packs(log.log.senders.front(), series);
 }
 
 }  // namespace
@@ -193,7 +215,8 @@ const LogFamily& px4_family() {
                                    {"wind_estimate", "multi_id"},
                                    {"vehicle_local_position", "multi_id"}},
                                   describe_px4,
-                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}}};
+                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}},
+                                   {"battery_status", {"serial_number", "cycle_count"}}}};
     return family;
 }
 
