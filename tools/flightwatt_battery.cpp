@@ -4,6 +4,7 @@
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -12,8 +13,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace {
 
@@ -24,6 +27,7 @@ struct BatteryArguments {
     cli::FlightArguments flights;
     std::optional<std::string> name;
     std::optional<std::size_t> circuit;
+    cli::PackArguments packs;
     std::size_t folds = battery::max_battery_folds;
 };
 
@@ -34,9 +38,26 @@ battery::IdentificationOptions identification_options(const cli::StageCall& call
     return options;
 }
 
+/// The records of all uses. Warns where they are of several packs.
+std::vector<battery::DischargeRecord> records_of(const cli::StageCall& call, std::vector<answer::PackUse>& uses) {
+    std::set<std::string> packs;
+    std::vector<battery::DischargeRecord> records;
+    for (auto& use : uses) {
+        packs.insert(use.pack.empty() ? "unnamed" : use.pack);
+        records.push_back(std::move(use.record));
+    }
+    if (packs.size() > 1)
+        cli::warn(call, fmt::format("one battery is identified from flights of {} packs: {}; --pack chooses one",
+                                    packs.size(), fmt::join(packs, ", ")));
+    return records;
+}
+
 /// The records that can be used. Each flight without one is named, with the reason.
-std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, cli::FlightArguments flights,
-                                                   std::optional<std::size_t> circuit) {
+std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, const BatteryArguments& arguments) {
+    auto flights = arguments.flights;
+    const auto& circuit = arguments.circuit;
+    cli::LogPlaces places;
+    std::vector<std::string> files;
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
     std::vector<std::pair<std::string, Diagnostic>> refusals;  // by file
@@ -47,28 +68,30 @@ std::vector<battery::DischargeRecord> read_records(const cli::StageCall& call, c
             auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
                                                         ? select_circuit(loaded.data, circuit.value_or(1))
                                                         : loaded.data);
+            files.push_back(file);
             for (const auto& text : found.notes)
                 cli::add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
-            return std::move(found.records);
+            return answer::pack_uses(loaded.data, std::move(found.records), places.folder(file).filename().string());
         } catch (const InputError& error) {
             refusals.emplace_back(file,
                                   Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
                                              fmt::format("it is excluded: {}", error.what()), loaded.series.flight});
             refused.emplace(error);
-            return std::vector<battery::DischargeRecord>{};
+            return std::vector<answer::PackUse>{};
         }
     };
-    auto records = cli::from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && refusals.size() == 1) throw InputError(*refused);
+    auto uses = cli::from_flights<answer::PackUse>(call, flights, read);
+    if (uses.empty() && refusals.size() == 1) throw InputError(*refused);
     for (const auto& [file, refusal] : refusals) cli::leave_out(call, flights, file, refusal);
-    if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
-    return records;
+    if (uses.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
+    name_packs(call, arguments.packs, files, uses);
+    return records_of(call, uses);
 }
 
 int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto options = identification_options(call, arguments);
     const auto folds = arguments.folds;
-    const auto records = read_records(call, arguments.flights, arguments.circuit);
+    const auto records = read_records(call, arguments);
     cli::note_folds(call, records.size(), folds);
     cli::ProgressBar identifying("identifications");
     const auto identified = identify_battery(records, options);
@@ -121,6 +144,7 @@ resistance shows the pack's state of health. Flights whose current was computed 
     options.add("circuit", arguments.circuit, {.value = "N", .min = 1, .max = 16},
                 "of a vehicle with circuits of different voltages, as segment lists them; default: the one with the "
                 "most energy");
+    cli::add_pack_options(options, arguments.packs);
     cli::add_folds_option(options, arguments.folds);
     options.add("name", arguments.name, {.value = "NAME"}, "the battery's name; default: FILE's");
     cli::add_flight_options(options, arguments.flights);

@@ -92,19 +92,22 @@ void name_by_folders(std::vector<PackUse>& uses, std::vector<std::string>& notes
 void note_unfit(const std::vector<PackUse>& uses, const std::vector<ListedPack>& listed,
                 std::vector<std::string>& notes) {
     for (const auto& pack : listed) {
+        auto place = pack.where;  // notes go to pages, which name no folder
+        place.file = std::filesystem::path(place.file).filename().string();
+        const auto note = [&](const std::string& text) {
+            notes.push_back(fmt::format("{}: pack '{}' {}", to_string(place), pack.name, text));
+        };
         for (const auto& pattern : pack.flights)
             if (std::ranges::none_of(uses,
                                      [&](const auto& use) { return fits(pattern, use) && is_in_days(pack, use); }))
-                notes.push_back(
-                    fmt::format("{}: pack '{}': no flight is '{}'", to_string(pack.where), pack.name, pattern));
+                note(fmt::format("has no flight '{}'", pattern));
         if (pack.flights.empty() && std::ranges::none_of(uses, [&](const auto& use) { return use.pack == pack.name; }))
-            notes.push_back(fmt::format("{}: pack '{}' has no flight", to_string(pack.where), pack.name));
+            note("has no flight");
         std::set<std::string> serials;
         for (const auto& use : uses)
             if (use.pack == pack.name && !use.serial.empty()) serials.insert(use.serial);
         if (serials.size() > 1)
-            notes.push_back(fmt::format("{}: pack '{}' has flights whose logs state several serial numbers: {}",
-                                        to_string(pack.where), pack.name, fmt::join(serials, ", ")));
+            note(fmt::format("has flights whose logs state several serial numbers: {}", fmt::join(serials, ", ")));
     }
 }
 
@@ -124,7 +127,8 @@ std::string to_string(PackNaming naming) {
     return "none";
 }
 
-std::vector<PackUse> pack_uses(const flight::FlightData& data, const std::string& folder) {
+std::vector<PackUse> pack_uses(const flight::FlightData& data, std::vector<battery::DischargeRecord> records,
+                               const std::string& folder) {
     auto start_s = data.start_clock_s;
     if (!start_s || *start_s <= 0.0) {
         const auto named = flight::start_in_name(data.flight);
@@ -132,7 +136,7 @@ std::vector<PackUse> pack_uses(const flight::FlightData& data, const std::string
     }
     std::vector<PackUse> uses;
     bool is_first_pack = true;
-    for (auto& record : battery::discharge_records(data).records) {
+    for (auto& record : records) {
         is_first_pack = is_first_pack && !record.is_other_pack;
         PackUse use;
         use.flight = record.flight;
@@ -163,6 +167,19 @@ std::vector<ListedPack> read_packs_file(const std::filesystem::path& path) {
     });
     if (listed.empty()) throw InputError({path.string()}, "has no [[pack]]", "see packs.toml in docs/formats.md");
     return listed;
+}
+
+std::vector<ListedPack> read_packs_beside(const std::set<std::filesystem::path>& folders) {
+    std::set<std::filesystem::path> lists;
+    std::error_code none;
+    for (const auto& folder : folders)
+        if (const auto list = folder / "packs.toml"; std::filesystem::exists(list, none))
+            lists.insert(std::filesystem::canonical(list));
+    if (lists.size() > 1)
+        throw InputError({lists.rbegin()->string()},
+                         fmt::format("there is another list of packs, {}", lists.begin()->string()),
+                         "join the two into one file");
+    return lists.empty() ? std::vector<ListedPack>{} : read_packs_file(*lists.begin());
 }
 
 std::vector<std::string> name_packs(std::vector<PackUse>& uses, const std::vector<ListedPack>& listed) {

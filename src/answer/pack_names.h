@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,9 @@ struct PackUse {
     std::string continues = {};     ///< the use at whose end this one begins: the pack was not charged between
 };
 
-/// The uses of packs in a flight. Throws InputError as battery::discharge_records.
-std::vector<PackUse> pack_uses(const flight::FlightData& data, const std::string& folder = {});
+/// The uses of packs in a flight, whose records are these; `folder` is that of its log.
+std::vector<PackUse> pack_uses(const flight::FlightData& data, std::vector<battery::DischargeRecord> records,
+                               const std::string& folder);
 
 /// A pack of packs.toml (docs/formats.md).
 struct ListedPack {
@@ -53,6 +55,9 @@ struct ListedPack {
 
 /// Throws InputError for unknown keys, a name that is there twice, and values that are not possible.
 std::vector<ListedPack> read_packs_file(const std::filesystem::path& path);
+
+/// Reads packs.toml in one of the folders; nothing where none has one. Throws InputError where two have one.
+std::vector<ListedPack> read_packs_beside(const std::set<std::filesystem::path>& folders);
 
 /// Names the pack of each use: by the list, else by the log's serial number, else, where the logs of an aircraft are in
 /// several folders without dates in their names, by the folder. Returns notes: how packs were named, lines of the list

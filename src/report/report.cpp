@@ -18,8 +18,11 @@
 #include "report/trends_section.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <future>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -119,12 +122,20 @@ void add_trends(Draft& page, const BatchContent& batch) {
     for (const auto& flight : batch.flights)
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
     std::vector<FlightTrendData> flights(usable.size());
-    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i]); });
-    if (!trends_section(estimate_trends(flights)))
+    std::set<std::filesystem::path> folders{page.input.out};
+    for (const auto* flight : usable) folders.insert(std::filesystem::path(flight->log).parent_path());
+    for_each_in_parallel(usable.size(), [&](std::size_t i) {
+        const auto folder = std::filesystem::path(usable[i]->log).parent_path();
+        flights[i] = extract_trend_data(*usable[i], folder.filename().string());
+    });
+    auto uses = take_uses(flights);
+    auto notes = answer::name_packs(uses, answer::read_packs_beside(folders));
+    const bool is_named = std::ranges::any_of(uses, [](const auto& use) { return !use.pack.empty(); });
+    if (!is_named && !trends_section(estimate_trends(flights), {}))
         return;  // without dates, packs have no trend either: saves their time
-    const auto notes = add_state_of_health(flights, max_battery_flights, page.input.capacity_ah);
-    auto section = trends_section(estimate_trends(flights));
-    section->html += list_html(notes);
+    auto ledger = add_state_of_health(flights, std::move(uses), {page.input.capacity_ah, max_battery_flights});
+    std::ranges::move(notes, std::back_inserter(ledger.notes));
+    auto section = trends_section(estimate_trends(flights), ledger);
     section->place = SectionPlace::folded;
     page.content.sections.push_back(std::move(*section));
 }

@@ -207,16 +207,16 @@ const LogFamily& sdlog2_family() {
 }
 
 const LogFamily& px4_family() {
-    static const LogFamily family{px4_tracks(),
-                                  {{"battery_status", "multi_id"},
-                                   {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
-                                   {"vehicle_air_data", "multi_id"},
-                                   {"airspeed", "multi_id"},
-                                   {"wind_estimate", "multi_id"},
-                                   {"vehicle_local_position", "multi_id"}},
-                                  describe_px4,
-                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}},
-                                   {"battery_status", {"serial_number", "cycle_count"}}}};
+    static const LogFamily family{
+        px4_tracks(),
+        {{"battery_status", "multi_id"},
+         {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
+         {"vehicle_air_data", "multi_id"},
+         {"airspeed", "multi_id"},
+         {"wind_estimate", "multi_id"},
+         {"vehicle_local_position", "multi_id"}},
+        describe_px4,
+        {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}, {"battery_status", {"serial_number", "cycle_count"}}}};
     return family;
 }
 
