@@ -240,7 +240,8 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
     PackTrend trend{batch::estimate_trend(values), 0.0, 0.0, 0.0, {}, {}};
     if (!trend.answer.trend) return trend;
     const auto& slope = *trend.answer.trend;
-    std::tie(trend.first_day, trend.last_day) = std::pair(days.front(), days.back());
+    trend.first_day = days.front();
+    trend.last_day = days.back();
     const double middle_day = median(days);
     std::vector<double> levels;
     for (const auto& [day, value] : values) levels.push_back(value - slope.per_day * (day - middle_day));
@@ -425,7 +426,7 @@ PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& opti
         pack.named_by = first.named_by;
         pack.label_ah = first.label_ah;
         pack.aircraft = {first.aircraft};
-        auto parts = key.first.empty() ? divided_by_cells(ledger.uses, numbers) : std::vector{numbers};
+        auto parts = key.first.empty() ? divided_by_cells(ledger.uses, numbers) : std::vector<Numbers>{numbers};
         for (auto& part : parts) {
             pack.uses = std::move(part);
             Identifier(ledger, options).add(pack);

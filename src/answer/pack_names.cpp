@@ -28,8 +28,10 @@ std::optional<double> optional_day_s(const TomlTable& table, const char* key) {
 }
 
 ListedPack read_pack(const TomlTable& table) {
-    ListedPack pack{table.string("name"), optional_number_in(more_than_up_to(0.0, battery::max_capacity_ah), table,
-                                                             "capacity_ah", battery::capacity_hint)};
+    ListedPack pack;
+    pack.name = table.string("name");
+    pack.capacity_ah = optional_number_in(more_than_up_to(0.0, battery::max_capacity_ah), table, "capacity_ah",
+                                          battery::capacity_hint);
     if (table.has("flights")) pack.flights = table.strings("flights");
     constexpr double day_s = 86400.0;
     pack.since_s = optional_day_s(table, "since");
