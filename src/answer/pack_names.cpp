@@ -157,6 +157,7 @@ std::vector<PackUse> pack_uses(const flight::FlightData& data, std::vector<batte
 
 std::vector<ListedPack> read_packs_file(const std::filesystem::path& path) {
     const auto file = read_toml(path);
+    require_known_format(file);
     std::vector<ListedPack> listed;
     file.collect_unknown_keys([&] {
         for (const auto& table : file.tables("pack")) {
