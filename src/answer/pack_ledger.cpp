@@ -88,32 +88,34 @@ std::vector<Numbers> divided_by_resistance(const std::vector<PackUse>& uses, con
     return changes >= least_changes ? parts : std::vector<Numbers>{};
 }
 
+/// A pack at rest keeps its charge for longer, but may then have been charged or stored.
+constexpr double followed_s = seconds_per_day;
+
 /// Whether `use` begins, at rest and minutes to hours later, at the charge at which `before` ended, not full.
 bool goes_on_from(const PackUse& use, const PackUse& before) {
-    constexpr double most_apart_s = seconds_per_day;
-    if (!use.start_s || !before.start_s || !use.found || !before.found) return false;
+    if (!use.found || !before.found) return false;
     const double apart_s = *use.start_s - end_s(before);
     const double same_ah = same_charge_part * use.mean_capacity_ah;
     const double missing_ah = use.found->initial_depletion_ah;
     const double left_ah = before.found->initial_depletion_ah + before.found->drawn_ah;
-    return apart_s >= 0.0 && apart_s < most_apart_s && half_width_ah(use) < same_ah && missing_ah > same_ah &&
+    return apart_s >= 0.0 && apart_s < followed_s && half_width_ah(use) < same_ah && missing_ah > same_ah &&
            std::abs(missing_ah - left_ah) < same_ah;
 }
 
 /// Finds the uses that begin where exactly one other ended, of a named pack the one before.
 void follow_charge(std::vector<PackUse>& uses, const Numbers& numbers, bool is_one_pack) {
+    std::set<std::size_t> taken;
     for (std::size_t k = 1; k < numbers.size(); ++k) {
-        const PackUse* found = nullptr;
-        std::size_t count = 0;
-        for (auto before = is_one_pack ? k - 1 : 0; before < k; ++before) {
-            const auto& use = uses[numbers[before]];
-            const bool is_taken =
-                std::ranges::any_of(numbers, [&](std::size_t other) { return uses[other].continues == use.flight; });
-            if (is_taken || !goes_on_from(uses[numbers[k]], use)) continue;
-            found = &use;
-            ++count;
+        auto& use = uses[numbers[k]];
+        Numbers found;
+        for (auto before = k; before-- > 0 && (!is_one_pack || before + 1 == k);) {
+            const auto& other = uses[numbers[before]];
+            if (!use.start_s || !other.start_s || *use.start_s - *other.start_s > 2.0 * followed_s) break;
+            if (!taken.contains(numbers[before]) && goes_on_from(use, other)) found.push_back(numbers[before]);
         }
-        if (count == 1) uses[numbers[k]].continues = found->flight;
+        if (found.size() != 1) continue;
+        use.continues = uses[found.front()].flight;
+        taken.insert(found.front());
     }
 }
 
@@ -436,7 +438,9 @@ PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& opti
 }
 
 std::string describe(const Pack& pack) {
-    auto text = fmt::format("pack {}: {}: ", pack.name, to_string(pack.verdict.health));
+    const bool is_named = pack.named_by != PackNaming::none;
+    auto text = fmt::format("pack {}{}: {}: ", pack.name, is_named ? "" : " of " + pack.aircraft.front(),
+                            to_string(pack.verdict.health));
     if (pack.resistance_ohm)
         text += fmt::format(
             "{:.3g} mohm ({:.3g} to {:.3g}{}), ", *pack.resistance_ohm / units::milli,

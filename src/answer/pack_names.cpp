@@ -176,7 +176,7 @@ std::vector<ListedPack> read_packs_beside(const std::set<std::filesystem::path>&
     std::set<std::filesystem::path> lists;
     std::error_code none;
     for (const auto& folder : folders)
-        if (const auto list = folder / "packs.toml"; std::filesystem::exists(list, none))
+        if (const auto list = folder / "packs.toml"; !folder.empty() && std::filesystem::exists(list, none))
             lists.insert(std::filesystem::canonical(list));
     if (lists.size() > 1)
         throw InputError({lists.rbegin()->string()},

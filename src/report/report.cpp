@@ -1,7 +1,9 @@
 #include "report/report.h"
 
 #include "base/parallel.h"
+#include "batch/manifest.h"
 #include "cli/output/fit_output.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_file.h"
@@ -123,11 +125,14 @@ void add_trends(Draft& page, const BatchContent& batch) {
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
     std::vector<FlightTrendData> flights(usable.size());
     std::set<std::filesystem::path> folders{page.input.out};
-    for (const auto* flight : usable) folders.insert(std::filesystem::path(flight->log).parent_path());
-    for_each_in_parallel(usable.size(), [&](std::size_t i) {
-        const auto folder = std::filesystem::path(usable[i]->log).parent_path();
-        flights[i] = extract_trend_data(*usable[i], folder.filename().string());
-    });
+    std::vector<std::string> names;
+    cli::LogPlaces places;
+    for (const auto* flight : usable) {
+        const auto folder = places.folder(batch::result_path(page.input.out, flight->name, batch::series_suffix));
+        folders.insert(folder);
+        names.push_back(folder.filename().string());
+    }
+    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i], names[i]); });
     auto uses = take_uses(flights);
     auto notes = answer::name_packs(uses, answer::read_packs_beside(folders));
     const bool is_named = std::ranges::any_of(uses, [](const auto& use) { return !use.pack.empty(); });
