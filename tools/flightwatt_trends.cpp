@@ -183,8 +183,8 @@ int flightwatt::stages::trends_stage(int argc, char** argv) {
         R"(Shows the ageing of aircraft and pack: for each flight its energy per minute and per kilometre over ground and
 through the air, the mean power of its cruise, the pack's resistance, its capacity if the flight draws enough to
 determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for
-each aircraft; and the packs with a verdict each: healthy, watch or retire. A flight that is in two folders of batch counts once.)" +
-            std::string(cli::several_flights_text)};
+each aircraft; and the health of each pack: healthy, watch or retire. A flight that is in two folders of batch counts
+once.)" + std::string(cli::several_flights_text)};
     stage.next = [](const auto&) { return "flightwatt validate {in}"; };
     stage.json_schema = cli::document_schema<TrendsOutput>;
     stage.examples = {"flightwatt trends my -o trends.csv", "flightwatt trends season1 season2 --capacity 2.2"};
@@ -195,7 +195,7 @@ each aircraft; and the packs with a verdict each: healthy, watch or retire. A fl
         options, arguments.capacity_ah,
         "the pack's capacity, the mean over these flights; default: by the flights, or a guess from charts");
     cli::add_pack_options(options, arguments.packs);
-    options.add("ledger", arguments.ledger, {.value = "FILE"}, "write the packs with their verdicts as CSV: packs.csv");
+    options.add("ledger", arguments.ledger, {.value = "FILE"}, "write the packs with their health as CSV: packs.csv");
     options.add("mission", arguments.mission, {.value = "FILE"},
                 "also until when each pack lands this mission with its reserve in 95 of 100 flights");
     cli::add_filter_options(options, arguments.filter);

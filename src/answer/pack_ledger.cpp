@@ -324,7 +324,7 @@ std::string change_text(const PackTrend& trend) {
                        interval_text(*trend.change_interval_percent, 0));
 }
 
-PackVerdict verdict_of_resistance(const Pack& pack) {
+PackCondition condition_of_resistance(const Pack& pack) {
     if (!pack.resistance_ohm) return {PackHealth::unknown, "no resistance is known"};
     if (!pack.resistance.change_percent) {
         const auto& why = pack.resistance.answer.no_trend_reason;
@@ -339,13 +339,13 @@ PackVerdict verdict_of_resistance(const Pack& pack) {
 }
 
 /// What the capacity adds; healthy where it is unknown or proves nothing.
-PackVerdict verdict_of_capacity(const Pack& pack) {
-    const auto graded = [](double percent, double high_percent, std::string text) -> PackVerdict {
+PackCondition condition_of_capacity(const Pack& pack) {
+    const auto graded = [](double percent, double high_percent, std::string text) -> PackCondition {
         if (high_percent < retire_capacity_percent) return {PackHealth::retire, std::move(text)};
         const bool is_low = percent < watch_capacity_percent && high_percent < units::percent_per_whole;
         return {is_low ? PackHealth::watch : PackHealth::healthy, std::move(text)};
     };
-    PackVerdict by_trend{PackHealth::healthy, ""};
+    PackCondition by_trend{PackHealth::healthy, ""};
     if (pack.capacity.change_percent)
         by_trend = graded(units::percent_per_whole + *pack.capacity.change_percent,
                           units::percent_per_whole + pack.capacity.change_interval_percent->high,
@@ -358,17 +358,17 @@ PackVerdict verdict_of_capacity(const Pack& pack) {
     return by_label.health < by_trend.health ? by_trend : by_label;
 }
 
-PackVerdict verdict_of(const Pack& pack) {
-    auto verdict = verdict_of_resistance(pack);
-    const auto capacity = verdict_of_capacity(pack);
-    if (capacity.health > PackHealth::healthy && capacity.health >= verdict.health)
-        verdict = {capacity.health, capacity.reason + "; " + verdict.reason};
+PackCondition condition_of(const Pack& pack) {
+    auto condition = condition_of_resistance(pack);
+    const auto capacity = condition_of_capacity(pack);
+    if (capacity.health > PackHealth::healthy && capacity.health >= condition.health)
+        condition = {capacity.health, capacity.reason + "; " + condition.reason};
     else if (!capacity.reason.empty())
-        verdict.reason += "; " + capacity.reason;
-    if (!pack.may_be_several) return verdict;
-    if (verdict.health == PackHealth::retire) verdict.health = PackHealth::watch;
-    if (pack.uses.size() > 1) verdict.reason += "; if these flights are of one pack: nothing names their packs";
-    return verdict;
+        condition.reason += "; " + capacity.reason;
+    if (!pack.may_be_several) return condition;
+    if (condition.health == PackHealth::retire) condition.health = PackHealth::watch;
+    if (pack.uses.size() > 1) condition.reason += "; if these flights are of one pack: nothing names their packs";
+    return condition;
 }
 
 void Identifier::finish(Pack& pack, const std::optional<battery::BatteryIdentification>& found) {
@@ -389,7 +389,7 @@ void Identifier::finish(Pack& pack, const std::optional<battery::BatteryIdentifi
         if (!use.found || !use.found->capacity) return std::nullopt;
         return use.found->capacity->ratio * units::percent_per_whole;
     });
-    pack.verdict = verdict_of(pack);
+    pack.condition = condition_of(pack);
     ledger_.packs.push_back(std::move(pack));
 }
 
@@ -440,13 +440,13 @@ PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& opti
 std::string describe(const Pack& pack) {
     const bool is_named = pack.named_by != PackNaming::none;
     auto text = fmt::format("pack {}{}: {}: ", pack.name, is_named ? "" : " of " + pack.aircraft.front(),
-                            to_string(pack.verdict.health));
+                            to_string(pack.condition.health));
     if (pack.resistance_ohm)
         text += fmt::format(
             "{:.3g} mohm ({:.3g} to {:.3g}{}), ", *pack.resistance_ohm / units::milli,
             pack.resistance_interval_ohm->low / units::milli, pack.resistance_interval_ohm->high / units::milli,
             pack.temperature_c ? fmt::format(", air {:.0f} degC", *pack.temperature_c) : ", temperature unknown");
-    text += pack.verdict.reason;
+    text += pack.condition.reason;
     if (!pack.mission_until.empty()) text += "; the mission: " + pack.mission_until;
     return text;
 }

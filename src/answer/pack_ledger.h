@@ -29,8 +29,8 @@ enum class PackHealth { unknown, healthy, watch, retire };
 
 std::string to_string(PackHealth health);
 
-/// A verdict with its reason.
-struct PackVerdict {
+/// The health of a pack with its reason.
+struct PackCondition {
     PackHealth health = PackHealth::unknown;
     std::string reason;
 };
@@ -66,12 +66,12 @@ struct Pack {
     std::optional<double> start_charge_percent;  ///< at their start
     PackTrend resistance;                        ///< of like uses
     std::optional<double> label_ah;
-    std::optional<double> capacity_ah;  ///< by the flights, whatever the label says
+    std::optional<double> capacity_ah;  ///< by the flights, not by the label
     std::optional<Interval> capacity_interval_ah;
     PackTrend capacity;                           ///< of percentages of the mean
     std::optional<double> rest_voltage_v;         ///< before uses that begin full: mean
     std::optional<double> rest_voltage_spread_v;  ///< highest less lowest
-    PackVerdict verdict;
+    PackCondition condition;
     std::string mission_until;  ///< see mission_life(); empty without a mission
 };
 
@@ -86,7 +86,7 @@ struct PackLedger {
     std::vector<std::string> notes;  ///< why something is unknown
 };
 
-/// The packs of uses that name_packs() has named, each with its history and a verdict. Unnamed uses of an aircraft are
+/// The packs of uses that name_packs() has named, each with its history and health. Unnamed uses of an aircraft are
 /// one entry that may be of several packs, divided only where voltage or resistance prove two (docs/guide.md). Throws
 /// UsageError where flights draw more than LedgerOptions::capacity_ah.
 PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& options = {});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -85,9 +86,7 @@ std::string mission_life(const Pack& pack, const mission::PreparedMission& missi
         const auto latest = first_day(pack, mission, days, Pace::slowest);
         return fmt::format("until {} ({} to {})", day_text(*day), day_text(earliest.value_or(*day)),
                            latest ? day_text(*latest) : "later than " + day_text(days.high));
-    } catch (const NoResultError& error) {
-        return fmt::format("unknown: {}", error.what());
-    } catch (const UsageError& error) {
+    } catch (const std::runtime_error& error) {  // of input, usage or result
         return fmt::format("unknown: {}", error.what());
     }
 }

@@ -202,10 +202,10 @@ std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends, 
         std::ranges::any_of(ledger.packs, [](const auto& pack) { return pack.named_by != answer::PackNaming::none; });
     if (aircraft.empty() && !has_packs) return std::nullopt;
     Section section{"trends", "Packs and trends"};
-    std::vector<std::string> verdicts;
-    for (const auto& pack : ledger.packs) verdicts.push_back(describe(pack));
+    std::vector<std::string> lines;
+    for (const auto& pack : ledger.packs) lines.push_back(describe(pack));
     if (!ledger.packs.empty()) {
-        section.html += heading("Packs") + list_html(verdicts);
+        section.html += heading("Packs") + list_html(lines);
         add_table(section, {table_of(ledger.packs), "Packs with their flights", "tab:packs"}, {.sortable = true});
     }
     section.html += list_html(ledger.notes);

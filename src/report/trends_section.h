@@ -24,7 +24,7 @@ struct FlightTrendData {
     std::string aircraft_name = {};
     FlightSummary facts;
     std::vector<answer::PackUse> uses;  ///< until take_uses()
-    std::string no_uses_reason;         ///< reason why there are none
+    std::string no_uses_reason;         ///< reason why there is no use
     std::optional<battery::FlightResistance> resistance;
     std::optional<double> capacity_ah;  ///< capacity of the pack, if the flight determines it
     Interval capacity_interval_ah;

@@ -58,7 +58,7 @@ std::vector<PackUse> two_packs(bool are_named, double b_ohm = first_ohm) {
 
 std::vector<std::string> names(const PackLedger& ledger) {
     std::vector<std::string> found;
-    for (const auto& pack : ledger.packs) found.push_back(pack.name + ": " + to_string(pack.verdict.health));
+    for (const auto& pack : ledger.packs) found.push_back(pack.name + ": " + to_string(pack.condition.health));
     return found;
 }
 
@@ -84,7 +84,7 @@ TEST(PackLedger, DividesUnnamedPacksOnlyWhereTheyWereFlownInTurnWithUnlikeResist
     const auto like = make_pack_ledger(two_packs(false), {.capacity_ah = full_ah});
     ASSERT_EQ(like.packs.size(), 1U);
     EXPECT_TRUE(like.packs[0].may_be_several);
-    EXPECT_THAT(like.packs[0].verdict.reason, HasSubstr("nothing names their packs"));
+    EXPECT_THAT(like.packs[0].condition.reason, HasSubstr("nothing names their packs"));
 }
 
 TEST(PackLedger, DoesNotDivideAPackThatAgesOrRetireOneThatMayBeSeveral) {
@@ -111,8 +111,8 @@ TEST(PackLedger, FollowsAPartlyUsedPack) {
     ASSERT_EQ(ledger.packs.size(), 1U);
     EXPECT_EQ(ledger.packs[0].partly_used, 2U);
     EXPECT_FALSE(ledger.packs[0].may_be_several) << "each flight begins where another one ended";
-    EXPECT_EQ(ledger.packs[0].verdict.health, PackHealth::unknown);
-    EXPECT_THAT(ledger.packs[0].verdict.reason, HasSubstr("3 flights, expected 5 or more"));
+    EXPECT_EQ(ledger.packs[0].condition.health, PackHealth::unknown);
+    EXPECT_THAT(ledger.packs[0].condition.reason, HasSubstr("3 flights, expected 5 or more"));
     uses[2].start_s = *uses[2].start_s + 3.0 * seconds_per_day;
     EXPECT_EQ(make_pack_ledger(uses, {.capacity_ah = full_ah}).uses[2].continues, "") << "days later";
 }
@@ -126,8 +126,8 @@ TEST(PackLedger, ComparesTheCapacityWithTheLabel) {
     const auto ledger = make_pack_ledger(worn);
     const auto& pack = ledger.packs.at(0);
     EXPECT_NEAR(*pack.capacity_ah, 1.6, 0.2);
-    EXPECT_GE(pack.verdict.health, PackHealth::watch) << pack.verdict.reason;
-    EXPECT_THAT(pack.verdict.reason, HasSubstr("of 2.4 Ah"));
+    EXPECT_GE(pack.condition.health, PackHealth::watch) << pack.condition.reason;
+    EXPECT_THAT(pack.condition.reason, HasSubstr("of 2.4 Ah"));
     for (auto& use : worn) use.label_ah = 1.0;  // they drew more
     const auto refused = make_pack_ledger(worn);
     EXPECT_THAT(refused.notes, testing::Contains(HasSubstr("drew more than the 1 Ah of its label")));

@@ -48,7 +48,8 @@ TEST(PackNames, AreOfTheListThenOfTheSerialNumber) {
                                 "[[pack]]\nname = \"C\"\n"));
     EXPECT_THAT(packs_of(uses), ElementsAre("A1 by packs.toml", "77 by serial number", "B by packs.toml", " by none"));
     EXPECT_EQ(uses[1].label_ah, 5.0);
-    EXPECT_THAT(notes, ElementsAre("packs.toml:2:1: pack 'A1' has no flight 'z*'", HasSubstr("pack 'C' has no flight")));
+    EXPECT_THAT(notes,
+                ElementsAre("packs.toml:2:1: pack 'A1' has no flight 'z*'", HasSubstr("pack 'C' has no flight")));
 }
 
 TEST(PackNames, AreOfFoldersWithoutDatesWhereLogsStandInSeveral) {

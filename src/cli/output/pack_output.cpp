@@ -15,7 +15,7 @@ namespace flightwatt::answer {
 
 Fields<Pack> record_fields(const Pack*) {
     using R = Pack;
-    using V = PackVerdict;
+    using V = PackCondition;
     using T = PackTrend;
     const auto day = [](const std::optional<double>& time_s) {
         return time_s ? day_text(*time_s / seconds_per_day) : std::string();
@@ -69,9 +69,9 @@ Fields<Pack> record_fields(const Pack*) {
         field("rest_voltage_v", &R::rest_voltage_v, "before flights that begin full: mean", csv_column{}),
         field("rest_voltage_spread_v", &R::rest_voltage_spread_v, "highest less lowest of these", csv_column{}),
         field(
-            "verdict", [](const R& pack) { return to_string(pack.verdict.health); },
+            "health", [](const R& pack) { return to_string(pack.condition.health); },
             "`healthy`, `watch`, `retire` or `unknown`", csv_column{}, column{}),
-        field("reason", at(&R::verdict, &V::reason), "why", csv_column{}),
+        field("reason", at(&R::condition, &V::reason), "why", csv_column{}),
         field("mission_until", &R::mission_until, "until when it flies the mission of --mission with its reserve",
               csv_column{}, column_if_any("mission")));
 }

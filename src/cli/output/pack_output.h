@@ -35,7 +35,7 @@ class LogPlaces {
     std::map<std::filesystem::path, std::map<std::string, std::string>> logs_;  ///< by batch and flight
 };
 
-/// Names the packs of uses from these files by packs.toml, in one of the inputs that are folders or beside a log, or of
+/// Names the packs of uses from these files by packs.toml, in one of the inputs that are folders or next to a log, or of
 /// --packs-file; then leaves those of --pack. Notes what was found. Throws as answer::read_packs_file, name_packs and
 /// choose_pack.
 void name_packs(const StageCall& call, const PackArguments& arguments, const std::vector<std::string>& files,
