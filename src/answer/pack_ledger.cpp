@@ -385,7 +385,7 @@ void Identifier::finish(Pack& pack, const std::optional<battery::BatteryIdentifi
         pack.equivalent_cycles = pack.charge_ah / found->capacity.value_ah;
     }
     add_resistance(uses, pack);
-    pack.capacity = trend_of(uses, pack.uses, [](const PackUse& use) -> std::optional<double> {
+    pack.capacity = trend_of(uses, like_uses(uses, pack.uses), [](const PackUse& use) -> std::optional<double> {
         if (!use.found || !use.found->capacity) return std::nullopt;
         return use.found->capacity->ratio * units::percent_per_whole;
     });
