@@ -350,7 +350,9 @@ PackCondition condition_of_capacity(const Pack& pack) {
         by_trend = graded(units::percent_per_whole + *pack.capacity.change_percent,
                           units::percent_per_whole + pack.capacity.change_interval_percent->high,
                           "capacity " + change_text(pack.capacity));
-    if (!pack.label_ah || !pack.capacity_interval_ah) return by_trend;
+    constexpr double vague_factor = 2.0;  // between the ends of an interval that is too wide for a comparison
+    const auto& interval_ah = pack.capacity_interval_ah;
+    if (!pack.label_ah || !interval_ah || interval_ah->high > vague_factor * interval_ah->low) return by_trend;
     auto by_label = graded(units::percentage(*pack.capacity_ah, *pack.label_ah),
                            units::percentage(pack.capacity_interval_ah->high, *pack.label_ah),
                            fmt::format("capacity {:.3g} Ah ({}) of {:g} Ah", *pack.capacity_ah,

@@ -108,7 +108,7 @@ void name_packs(const StageCall& call, const PackArguments& arguments, const std
         if (std::filesystem::is_directory(input, none)) folders.insert(input);
     for (const auto& file : files) folders.insert(places.folder(file));
     const auto listed = arguments.list ? answer::read_packs_file(*arguments.list) : answer::read_packs_beside(folders);
-    for (const auto& text : answer::name_packs(uses, listed)) add_diagnostic(call, {Severity::note, "packs", text});
+    for (const auto& text : answer::name_packs(uses, listed)) note(call, text);
     if (arguments.pack) answer::choose_pack(uses, *arguments.pack);
 }
 
