@@ -240,6 +240,7 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
         values.push_back({days.back(), *value});
     }
     PackTrend trend{batch::estimate_trend(values), 0.0, 0.0, 0.0, {}, {}};
+    if (values.empty()) trend.answer.no_trend_reason = "no flight with a date determines it";
     if (!trend.answer.trend) return trend;
     const auto& slope = *trend.answer.trend;
     trend.first_day = days.front();
