@@ -2,6 +2,7 @@
 
 #include "answer/answer.h"
 #include "answer/pack_answer.h"
+#include "answer/pack_ledger.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "batch/manifest.h"
@@ -9,8 +10,8 @@
 #include "cli/output/answer_output.h"
 #include "cli/output/batch_folder.h"
 #include "cli/output/battery_output.h"
-#include "cli/output/discharge_input.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/pack_input.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
@@ -37,6 +38,7 @@ struct AnswerArguments {
     cli::BatchArguments batch;
     answer::Question question;
     std::optional<double> capacity_ah;
+    cli::PackArguments packs;
     std::optional<std::string> wind;
     std::optional<double> home_distance_m;
     std::optional<std::string> table;
@@ -49,17 +51,22 @@ cli::StageCall folder_call(cli::StageCall call, const std::string& folder) {
     return call;
 }
 
-/// The pack of the flights in a folder, with what is said of it.
+/// The pack of the flights in a folder, with what is said of it, and the health of each that they name.
 answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArguments& arguments,
-                                 const std::vector<answer::FlightFacts>& facts) {
-    std::vector<battery::DischargeRecord> records;
-    std::string no_records_reason;
+                                 const std::vector<answer::FlightFacts>& facts, std::vector<answer::Pack>& health) {
+    std::vector<answer::PackUse> uses;
+    std::string no_uses_reason;
     try {
-        records = cli::discharge_records(call, arguments.batch.flights);
+        uses = cli::read_pack_uses(call, arguments.batch.flights, arguments.packs);
     } catch (const InputError& error) {
-        no_records_reason = error.what();
+        no_uses_reason = error.what();
     }
-    auto pack = find_pack(records, no_records_reason, choose_capacity(arguments.capacity_ah, facts), facts);
+    auto pack = find_pack(records_of(call, uses), no_uses_reason, choose_capacity(arguments.capacity_ah, facts), facts);
+    if (pack.identified) {
+        const auto ledger = make_pack_ledger(std::move(uses), {pack.answer.capacity_ah.value});
+        for (const auto& note : ledger.notes) cli::add_diagnostic(call, {Severity::note, "the pack", note});
+        health = ledger.packs;
+    }
     for (const auto& warning : pack.warnings) cli::warn(call, warning);
     if (pack.identified)
         for (const auto& remark : cli::battery_remarks(*pack.identified))
@@ -149,7 +156,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     const auto inner = folder_call(call, folder.string());
     const auto facts = cli::from_flights<answer::FlightFacts>(
         inner, arguments.batch.flights, [](const auto&, const auto& loaded) { return answer::flight_facts(loaded); });
-    const auto pack = pack_of_folder(inner, arguments, facts);
+    const auto pack = pack_of_folder(inner, arguments, facts, answer.packs);
     const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / "pack.toml", facts, pack.answer};
     const auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
     write_file_atomically(aircraft.battery_file, comment + to_toml(pack.battery));
@@ -303,6 +310,7 @@ one with the most flights; --each answers for each of them.)"};
     options.add("table", arguments.table, cli::output_file("FILE.csv"), "write one row an aircraft to FILE");
     options.add("no-page", arguments.no_page, "write no page");
     cli::add_each_option(options, arguments.batch.flights, "answers for each aircraft, in a folder of its own");
+    cli::add_pack_options(options, arguments.packs);
     cli::add_filter_options(options, arguments.batch.filter);
     cli::add_flight_options(options, arguments.batch.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) {

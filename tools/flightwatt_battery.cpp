@@ -3,8 +3,9 @@
 #include "battery/battery_toml.h"
 #include "battery/identification.h"
 #include "cli/output/battery_output.h"
-#include "cli/output/discharge_input.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/pack_input.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -25,6 +26,7 @@ struct BatteryArguments {
     cli::FlightArguments flights;
     std::optional<std::string> name;
     std::optional<std::size_t> circuit;
+    cli::PackArguments packs;
     std::size_t folds = battery::max_battery_folds;
 };
 
@@ -38,7 +40,8 @@ battery::IdentificationOptions identification_options(const cli::StageCall& call
 int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     const auto options = identification_options(call, arguments);
     const auto folds = arguments.folds;
-    const auto records = cli::discharge_records(call, arguments.flights, arguments.circuit);
+    const auto records =
+        records_of(call, cli::read_pack_uses(call, arguments.flights, arguments.packs, arguments.circuit));
     cli::note_folds(call, records.size(), folds);
     cli::ProgressBar identifying("identifications");
     const auto identified = identify_battery(records, options);
@@ -91,6 +94,7 @@ resistance shows the pack's state of health. Flights whose current was computed 
     options.add("circuit", arguments.circuit, {.value = "N", .min = 1, .max = 16},
                 "of a vehicle with circuits of different voltages, as segment lists them; default: the one with the "
                 "most energy");
+    cli::add_pack_options(options, arguments.packs);
     cli::add_folds_option(options, arguments.folds);
     options.add("name", arguments.name, {.value = "NAME"}, "the battery's name; default: FILE's");
     cli::add_flight_options(options, arguments.flights);

@@ -1,10 +1,15 @@
 // flightwatt trends: ageing of aircraft and pack over the dates of their flights.
 
+#include "answer/pack_life.h"
+#include "base/atomic_file.h"
 #include "batch/trend.h"
 #include "cli/output/flight_options.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
+#include "mission/mission_file.h"
+#include "mission/prepared_mission.h"
 #include "report/batch_content.h"
 #include "report/trends_section.h"
 #include "stages.h"
@@ -21,12 +26,16 @@ using namespace flightwatt;
 
 struct TrendsArguments {
     std::optional<double> capacity_ah;
+    cli::PackArguments packs;
+    std::optional<std::string> ledger;
+    std::optional<std::string> mission;
     cli::FlightFilter filter;
     cli::FlightArguments flights;
 };
 
-std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, const TrendsArguments& arguments) {
-    const auto chosen = cli::with_chosen_flights(call, arguments.filter, arguments.flights.load);
+std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, const cli::StageCall& chosen,
+                                                  const TrendsArguments& arguments) {
+    cli::LogPlaces places;
     return cli::from_flights<report::FlightTrendData>(
         chosen, arguments.flights, [&](const std::string& file, flight::LoadedFlight& loaded) {
             if (!loaded.exclusion.empty()) {
@@ -39,10 +48,10 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
             flight.name = loaded.data.flight;
             flight.data = std::move(loaded.data);
             flight.phases = std::move(loaded.phases);
-            auto flown = extract_trend_data(flight);
-            if (!flown.no_record_reason.empty())
+            auto flown = extract_trend_data(flight, places.folder(file).filename().string());
+            if (!flown.no_uses_reason.empty())
                 cli::add_diagnostic(
-                    call, {Severity::note, "no resistance and no capacity", flown.no_record_reason, flown.name});
+                    call, {Severity::note, "no resistance and no capacity", flown.no_uses_reason, flown.name});
             return std::vector{std::move(flown)};
         });
 }
@@ -87,11 +96,13 @@ namespace {
 struct TrendsOutput {
     const std::vector<report::FlightTrendData>* flights = nullptr;
     const std::vector<report::AircraftTrend>* trends = nullptr;
+    const std::vector<answer::Pack>* packs = nullptr;
 };
 
 Fields<TrendsOutput> record_fields(const TrendsOutput*) {
     return {field("flights", &TrendsOutput::flights, "flights by aircraft and date"),
-            field("trends", &TrendsOutput::trends, "trends by aircraft and quantity")};
+            field("trends", &TrendsOutput::trends, "trends by aircraft and quantity"),
+            field("packs", &TrendsOutput::packs, "the ledger of packs")};
 }
 
 void note_trends(const cli::StageCall& call, const std::vector<report::FlightTrendData>& flights,
@@ -117,14 +128,38 @@ void note_trends(const cli::StageCall& call, const std::vector<report::FlightTre
                                     changing.size(), tested, fmt::join(changing, ", ")));
 }
 
+/// Leaves the flights with a use of a pack.
+void leave_used(std::vector<report::FlightTrendData>& flights, const std::vector<answer::PackUse>& uses) {
+    std::erase_if(flights, [&](const auto& flight) {
+        return std::ranges::none_of(uses, [&](const auto& use) {
+            return use.flight == flight.name || use.flight.starts_with(flight.name + "#");
+        });
+    });
+}
+
+answer::PackLedger make_ledger(const cli::StageCall& call, const std::vector<std::string>& files,
+                               const TrendsArguments& arguments, std::vector<report::FlightTrendData>& flights) {
+    auto uses = take_uses(flights);
+    name_packs(call, arguments.packs, files, uses);
+    if (arguments.packs.pack) leave_used(flights, uses);
+    auto ledger = add_state_of_health(flights, std::move(uses), {.capacity_ah = arguments.capacity_ah});
+    if (arguments.mission) {
+        const auto mission = mission::prepare_mission(mission::read_mission(*arguments.mission));
+        for (auto& pack : ledger.packs) pack.mission_until = mission_life(pack, mission);
+    }
+    for (const auto& note : ledger.notes) cli::note(call, note);
+    if (arguments.ledger) write_file_atomically(*arguments.ledger, csv_of(ledger.packs));
+    return ledger;
+}
+
 int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
-    auto flights = read_flights(call, arguments);
+    const auto chosen = cli::with_chosen_flights(call, arguments.filter, arguments.flights.load);
+    auto flights = read_flights(call, chosen, arguments);
     if (flights.empty()) throw InputError({}, "no flight is left", "see the reasons above");
     std::ranges::stable_sort(flights, {}, [](const auto& flight) {
         return std::pair(flight.aircraft, flight.facts.start_clock_s.value_or(0.0));
     });
-    constexpr std::size_t max_records = 60;
-    for (const auto& note : add_state_of_health(flights, max_records, arguments.capacity_ah)) cli::note(call, note);
+    const auto ledger = make_ledger(call, chosen.inputs, arguments, flights);
     const auto trends = estimate_trends(flights);
     const auto screen = screen_of(call);
     write_csv_result(call, csv_of(flights),
@@ -132,10 +167,11 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
                       {"flight", "date", "energy_wh_per_min", "energy_wh_per_km", "cruise_power_w", "resistance_ohm",
                        "capacity_ah", "charge_ah"}});
     if (call.json)
-        cli::print_json(call, TrendsOutput{&flights, &trends});
+        cli::print_json(call, TrendsOutput{&flights, &trends, &ledger.packs});
     else if (call.output || screen.is_terminal)
         cli::print(screen_text(table_of(trends), screen, {"trends", {"quantity", "trend", "in 30 days"}}));
     note_trends(call, flights, trends);
+    for (const auto& pack : ledger.packs) cli::note(call, describe(pack));
     return cli::ok;
 }
 
@@ -147,8 +183,8 @@ int flightwatt::stages::trends_stage(int argc, char** argv) {
         R"(Shows the ageing of aircraft and pack: for each flight its energy per minute and per kilometre over ground and
 through the air, the mean power of its cruise, the pack's resistance, its capacity if the flight draws enough to
 determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for
-each aircraft. A flight that is in two folders of batch counts once.)" +
-            std::string(cli::several_flights_text)};
+each aircraft; and the health of each pack: healthy, watch or retire. A flight that is in two folders of batch counts
+once.)" + std::string(cli::several_flights_text)};
     stage.next = [](const auto&) { return "flightwatt validate {in}"; };
     stage.json_schema = cli::document_schema<TrendsOutput>;
     stage.examples = {"flightwatt trends my -o trends.csv", "flightwatt trends season1 season2 --capacity 2.2"};
@@ -158,6 +194,10 @@ each aircraft. A flight that is in two folders of batch counts once.)" +
     cli::add_capacity_option(
         options, arguments.capacity_ah,
         "the pack's capacity, the mean over these flights; default: by the flights, or a guess from charts");
+    cli::add_pack_options(options, arguments.packs);
+    options.add("ledger", arguments.ledger, {.value = "FILE"}, "write the packs with their health as CSV: packs.csv");
+    options.add("mission", arguments.mission, {.value = "FILE"},
+                "also until when each pack lands this mission with its reserve in 95 of 100 flights");
     cli::add_filter_options(options, arguments.filter);
     cli::add_flight_options(options, arguments.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return show_trends(call, arguments); });

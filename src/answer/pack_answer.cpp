@@ -59,6 +59,8 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
         known(identified.fit.resistance_ohm, fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"));
     pack.answer.resistance_interval_ohm = identified.errors.resistance_ohm;
     pack.answer.known_down_to_percent = identified.observed_min_soc_percent;
+    if (auto warning = capacity_warning(identified.battery); !warning.empty())
+        pack.warnings.push_back(std::move(warning));
     pack.identified = std::move(identified);
     return pack;
 }

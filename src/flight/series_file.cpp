@@ -100,6 +100,8 @@ FrontMatter read_matter(const TomlTable& table) {
     series.log_is_missing = table.optional_boolean("lacks_log").value_or(false);
     if (table.has("notes")) series.notes = table.strings("notes");
     if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
+    series.pack_serial = table.optional_string("pack_serial").value_or("");
+    series.pack_cycles = table.optional_number("pack_cycles");
     if (const auto kinds = table.optional_table("monitor_kinds"))
         for (const auto& id : kinds->keys()) series.monitor_kinds[id] = kinds->string(id);
     if (const auto capacities = table.optional_table("monitor_capacities_ah"))
@@ -164,6 +166,8 @@ std::string format_front_matter(const FlightSeries& series, const FileTracks& fi
     }
     if (series.start_clock_s) toml += fmt::format("start_clock_s = {}\n", toml_real(*series.start_clock_s));
     if (series.log_is_missing) toml += "lacks_log = true\n";
+    if (!series.pack_serial.empty()) toml += fmt::format("pack_serial = {}\n", toml_string(series.pack_serial));
+    if (series.pack_cycles) toml += fmt::format("pack_cycles = {}\n", toml_real(*series.pack_cycles));
     if (!series.notes.empty()) toml += fmt::format("notes = {}\n", toml_strings(series.notes));
     if (!series.block_names.empty()) toml += "[block_names]\n";
     for (const auto& [number, name] : series.block_names) {

@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "batch/manifest.h"
 #include "cli/output/fit_output.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
 #include "mechanical/table_one.h"
 #include "mission/mission_file.h"
@@ -22,8 +24,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <future>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -124,12 +129,23 @@ void add_trends(Draft& page, const BatchContent& batch) {
     for (const auto& flight : batch.flights)
         if (flight.rejected.empty() && flight.unusable_power.empty()) usable.push_back(&flight);
     std::vector<FlightTrendData> flights(usable.size());
-    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i]); });
-    if (!trends_section(estimate_trends(flights)))
+    std::set<std::filesystem::path> folders{page.input.out};
+    std::vector<std::string> names;
+    cli::LogPlaces places;
+    for (const auto* flight : usable) {
+        const auto folder = places.folder(batch::result_path(page.input.out, flight->name, batch::series_suffix));
+        folders.insert(folder);
+        names.push_back(folder.filename().string());
+    }
+    for_each_in_parallel(usable.size(), [&](std::size_t i) { flights[i] = extract_trend_data(*usable[i], names[i]); });
+    auto uses = take_uses(flights);
+    auto notes = answer::name_packs(uses, answer::read_packs_beside(folders));
+    const bool is_named = std::ranges::any_of(uses, [](const auto& use) { return !use.pack.empty(); });
+    if (!is_named && !trends_section(estimate_trends(flights), {}))
         return;  // without dates, packs have no trend either: saves their time
-    const auto notes = add_state_of_health(flights, max_battery_flights, page.input.capacity_ah);
-    auto section = trends_section(estimate_trends(flights));
-    section->html += list_html(notes);
+    auto ledger = add_state_of_health(flights, std::move(uses), {page.input.capacity_ah, max_battery_flights});
+    std::ranges::move(notes, std::back_inserter(ledger.notes));
+    auto section = trends_section(estimate_trends(flights), ledger);
     section->place = SectionPlace::folded;
     page.content.sections.push_back(std::move(*section));
 }

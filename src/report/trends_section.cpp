@@ -2,11 +2,15 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "cli/output/pack_output.h"
 #include "flight/flight_identity.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,44 +44,6 @@ std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
     std::set<std::string> names;
     for (const auto& flight : flights) names.insert(flight.aircraft);
     return names;
-}
-
-/// Of one aircraft's flights; returns the reasons for missing values.
-std::string add_health_of(std::span<FlightTrendData* const> flights, std::size_t max_flights,
-                          const std::optional<double>& capacity_ah) {
-    if (flights.empty()) return "";
-    if (flights.size() > max_flights)
-        return fmt::format("no resistance and no capacity of {} flights, expected at most {}", flights.size(),
-                           max_flights);
-    std::vector<battery::DischargeRecord> records;
-    for (const auto* flight : flights) records.push_back(flight->records.front());
-    battery::BatteryIdentification identified;
-    try {
-        identified =
-            identify_battery(records, {.capacity_ah = capacity_ah, .cells = {}, .name = "", .with_capacities = true});
-    } catch (const NoResultError& error) {
-        return fmt::format("no resistances and no capacities: {}", error.what());
-    }
-    std::size_t unknown = 0;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        auto& flight = *flights[i];
-        flight.resistance = identified.flights.at(i).resistance;
-        const auto& capacity = identified.flights.at(i).capacity;
-        if (!capacity) {
-            ++unknown;
-            continue;
-        }
-        const double mean_ah = identified.capacity.value_ah;
-        flight.capacity_percent = units::percentage(capacity->ratio, 1.0);
-        flight.capacity_ah = mean_ah * capacity->ratio;
-        flight.capacity_interval_ah = {mean_ah * capacity->ratio_interval.low, mean_ah * capacity->ratio_interval.high};
-    }
-    if (flights.size() == 1) return unknown > 0 ? "a single flight does not determine a capacity" : "";
-    if (unknown > 0)
-        return fmt::format("no capacity of {} of {} flights: their charge does not determine it within 15 %", unknown,
-                           flights.size());
-    const bool is_guess = identified.capacity.origin == battery::CapacityOrigin::chart;
-    return is_guess ? "the mean capacity is a guess from charts of lithium cells; give it with --capacity" : "";
 }
 
 constexpr double ms_per_day = 86400.0 * 1000.0;
@@ -132,7 +98,7 @@ Figure trend_figure(std::span<const AircraftTrend> trends, const std::string& ai
 
 std::span<const TrendQuantity> trend_quantities() { return quantities; }
 
-FlightTrendData extract_trend_data(const ReportFlight& flight) {
+FlightTrendData extract_trend_data(const ReportFlight& flight, const std::string& folder) {
     FlightTrendData flown;
     flown.name = flight.name;
     flown.aircraft = flight::describe_aircraft(flight.data.aircraft_id, flight.data.aircraft_name);
@@ -140,25 +106,38 @@ FlightTrendData extract_trend_data(const ReportFlight& flight) {
     flown.aircraft_name = flight.data.aircraft_name;
     flown.facts = summarize_flight(flight);
     try {
-        flown.records = battery::discharge_records(flight.data).records;
+        flown.uses = answer::pack_uses(flight.data, battery::discharge_records(flight.data).records, folder);
     } catch (const InputError& error) {
-        flown.no_record_reason = error.what();
+        flown.no_uses_reason = error.what();
     }
-    for (const auto& record : flown.records) flown.charge_ah = flown.charge_ah.value_or(0.0) + record.charge_ah.back();
+    for (const auto& use : flown.uses) flown.charge_ah = flown.charge_ah.value_or(0.0) + use.record.charge_ah.back();
     return flown;
 }
 
-std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t max_flights,
-                                             std::optional<double> capacity_ah) {
-    std::vector<std::string> notes;
-    for (const auto& aircraft : aircraft_names(flights)) {
-        std::vector<FlightTrendData*> flown;
-        for (auto& flight : flights)
-            if (flight.aircraft == aircraft && !flight.records.empty()) flown.push_back(&flight);
-        const auto note = add_health_of(flown, max_flights, capacity_ah);
-        if (!note.empty()) notes.push_back(fmt::format("{}: {}", aircraft, note));
+std::vector<answer::PackUse> take_uses(std::vector<FlightTrendData>& flights) {
+    std::vector<answer::PackUse> uses;
+    for (auto& flight : flights) std::ranges::move(std::exchange(flight.uses, {}), std::back_inserter(uses));
+    return uses;
+}
+
+answer::PackLedger add_state_of_health(std::vector<FlightTrendData>& flights, std::vector<answer::PackUse> uses,
+                                       const answer::LedgerOptions& options) {
+    std::map<std::string, FlightTrendData*> by_use;
+    for (auto& flight : flights) by_use.emplace(flight.name, &flight);
+    auto ledger = answer::make_pack_ledger(std::move(uses), options);
+    for (const auto& use : ledger.uses) {
+        const auto flight = by_use.find(use.flight);
+        if (flight == by_use.end() || !use.found) continue;
+        auto& found = *flight->second;
+        found.resistance = use.found->resistance;
+        const auto& capacity = use.found->capacity;
+        if (!capacity) continue;
+        const double mean_ah = use.mean_capacity_ah;
+        found.capacity_percent = units::percentage(capacity->ratio, 1.0);
+        found.capacity_ah = mean_ah * capacity->ratio;
+        found.capacity_interval_ah = {mean_ah * capacity->ratio_interval.low, mean_ah * capacity->ratio_interval.high};
     }
-    return notes;
+    return ledger;
 }
 
 std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights) {
@@ -215,15 +194,27 @@ Fields<AircraftTrend> record_fields(const AircraftTrend*) {
             field("trend", trend_direction, "", column{}, not_in_json{})};
 }
 
-std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends) {
+std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends, const answer::PackLedger& ledger) {
     std::set<std::string> aircraft;
     for (const auto& trend : trends)
         if (trend.answer.trend) aircraft.insert(trend.aircraft);
-    if (aircraft.empty()) return std::nullopt;
-    Section section{"trends", "Trends"};
-    section.html += paragraph(
-        "Aircraft and packs over the dates of their flights. A trend is significant if its interval excludes 0; one in "
-        "20 is by chance. Wind, season and different packs have effects too.");
+    const bool has_packs =
+        std::ranges::any_of(ledger.packs, [](const auto& pack) { return pack.named_by != answer::PackNaming::none; });
+    if (aircraft.empty() && !has_packs) return std::nullopt;
+    Section section{"trends", "Packs and trends"};
+    std::vector<std::string> lines;
+    for (const auto& pack : ledger.packs) lines.push_back(describe(pack));
+    if (!ledger.packs.empty()) {
+        section.html += heading("Packs") + list_html(lines);
+        add_table(section, {table_of(ledger.packs), "Packs with their flights", "tab:packs"}, {.sortable = true});
+    }
+    section.html += list_html(ledger.notes);
+    if (aircraft.empty()) return section;
+    section.html +=
+        heading("Trends") +
+        paragraph(
+            "Aircraft and packs over the dates of their flights. A trend is significant if its interval excludes 0; one in "
+            "20 is by chance. Wind, season and different packs have effects too.");
     for (const auto& name : aircraft) {
         if (aircraft.size() > 1) section.html += heading(name);
         add_figure(section, trend_figure(trends, name, fmt::format("trends-{}", section.figures.size() + 1)));

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "answer/pack_ledger.h"
 #include "base/statistics.h"
 #include "batch/trend.h"
-#include "battery/discharge_record.h"
-#include "battery/identification.h"
+#include "battery/identified_battery.h"
 #include "record/record.h"
 #include "report/batch_content.h"
 #include "report/html.h"
@@ -23,8 +23,8 @@ struct FlightTrendData {
     std::string aircraft_id = {};
     std::string aircraft_name = {};
     FlightSummary facts;
-    std::vector<battery::DischargeRecord> records;
-    std::string no_record_reason;  ///< reason why there are no records
+    std::vector<answer::PackUse> uses;  ///< until take_uses()
+    std::string no_uses_reason;         ///< reason why there is no use
     std::optional<battery::FlightResistance> resistance;
     std::optional<double> capacity_ah;  ///< capacity of the pack, if the flight determines it
     Interval capacity_interval_ah;
@@ -32,15 +32,15 @@ struct FlightTrendData {
     std::optional<double> charge_ah;         ///< charge drawn from the pack, also on the ground
 };
 
-/// Collects the quantities of an accepted flight.
-FlightTrendData extract_trend_data(const ReportFlight& flight);
+/// Collects the quantities of an accepted flight; `folder` is that of its log.
+FlightTrendData extract_trend_data(const ReportFlight& flight, const std::string& folder = {});
 
-/// Adds resistance and capacity of each flight, by the common open-circuit curve of an aircraft's flights
-/// (battery/identification/circuit_problem.h). `capacity_ah` is their mean capacity; without it, it may be a guess.
-/// Returns reasons for missing values, a line for each aircraft. Aircraft with more than `max_flights` are skipped, as
-/// the computation grows with their square. Throws UsageError where flights draw more than the capacity.
-std::vector<std::string> add_state_of_health(std::vector<FlightTrendData>& flights, std::size_t max_flights,
-                                             std::optional<double> capacity_ah = {});
+/// Moves the uses of packs out of the flights, to name their packs.
+std::vector<answer::PackUse> take_uses(std::vector<FlightTrendData>& flights);
+
+/// Makes the ledger of the flights' packs, and adds resistance and capacity of each flight, of its first pack.
+answer::PackLedger add_state_of_health(std::vector<FlightTrendData>& flights, std::vector<answer::PackUse> uses,
+                                       const answer::LedgerOptions& options = {});
 
 /// A quantity whose trend is estimated.
 struct TrendQuantity {
@@ -73,7 +73,8 @@ inline constexpr double shown_days = 30.0;
 /// Returns the direction of a trend: "rises", "falls", "not significant", or "unknown" with the reason.
 std::string trend_direction(const AircraftTrend& trend);
 
-/// Returns the section with figures of the known trends and a table of all; std::nullopt without any.
-std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends);
+/// Returns the section with the ledger of packs, figures of the known trends and a table of all; std::nullopt without
+/// any trend and any named pack.
+std::optional<Section> trends_section(const std::vector<AircraftTrend>& trends, const answer::PackLedger& ledger);
 
 }  // namespace flightwatt::report

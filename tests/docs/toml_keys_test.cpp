@@ -1,3 +1,4 @@
+#include "answer/pack_names.h"
 #include "base/atomic_file.h"
 #include "base/toml_reader.h"
 #include "battery/battery.h"
@@ -33,7 +34,7 @@ const std::map<std::string, std::string> sections{
     {"mission", "Mission file"},   {"disturbance", "Disturbance file"},
     {"model", "Mechanical model"}, {"series", "Series"},
     {"battery", "Battery"},        {"specification", "Profile specification"},
-    {"columns", "Column map"}};
+    {"columns", "Column map"},     {"packs", "Packs"}};
 
 void read_as(const std::string& kind, const std::filesystem::path& file) {
     if (kind == "mission") mission::read_mission(file, {.allow_unplanned = true, .cruise_s = {}});
@@ -41,6 +42,7 @@ void read_as(const std::string& kind, const std::filesystem::path& file) {
     if (kind == "model") mechanical::read_mechanical_model(file);
     if (kind == "series") flight::read_series_csv(file);
     if (kind == "columns") flight::read_column_map(file);
+    if (kind == "packs") answer::read_packs_file(file);
     if (kind == "battery") battery::read_battery(file);
     if (kind == "specification") compute::read_profile_specification(file);
 }

@@ -34,10 +34,19 @@ std::vector<FlightTrendData> flown(const test::AgedFlights& aged, double part_a_
         flight.facts.start_clock_s = seconds_per_day * aged.day[f];
         flight.facts.mean_power_w[flight::Phase::cruise] =
             fresh_w * (1.0 + part_a_day * aged.day[f] + 0.02 * normal(random));
-        flight.records = {aged.records[f]};
+        answer::PackUse use;
+        use.flight = flight.name;
+        use.aircraft = flight.aircraft;
+        use.start_s = flight.facts.start_clock_s;
+        use.record = aged.records[f];
+        flight.uses = {std::move(use)};
         flights.push_back(std::move(flight));
     }
     return flights;
+}
+
+answer::PackLedger add_health(std::vector<FlightTrendData>& flights, const answer::LedgerOptions& options = {}) {
+    return add_state_of_health(flights, take_uses(flights), options);
 }
 
 std::map<std::string, batch::Trend> told(const std::vector<AircraftTrend>& trends) {
@@ -56,7 +65,7 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
     std::map<std::string, std::size_t> found;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         auto flights = flown(test::aged_flights(ageing, seed), power_part_a_day, seed);
-        add_state_of_health(flights, 60);
+        add_health(flights);
         for (const auto& flight : flights) EXPECT_TRUE(flight.capacity_ah) << flight.name << " of seed " << seed;
         const double mean_part = 1.0 - ageing.part_a_day * ageing.days / 2.0;
         const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
@@ -81,7 +90,7 @@ TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
     std::size_t found = 0;
     for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {
         auto flights = flown(test::aged_flights({0.0, 0.0, 9}, seed), 0.0, seed);
-        add_state_of_health(flights, 60);
+        add_health(flights);
         for (const auto& [quantity, trend] : told(estimate_trends(flights))) {
             ++judged;
             found += is_significant(trend) ? 1 : 0;
@@ -98,11 +107,11 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
         flights[f].facts.mean_power_w[flight::Phase::cruise] = fresh_w + static_cast<double>(f);
     }
-    EXPECT_FALSE(trends_section(estimate_trends(flights)));
+    EXPECT_FALSE(trends_section(estimate_trends(flights), {}));
     flights.push_back(flights.back());
     flights.back().facts.start_clock_s = seconds_per_day * 9.0;
     flights.back().facts.mean_power_w[flight::Phase::cruise] = fresh_w + 9.0;
-    const auto section = trends_section(estimate_trends(flights));
+    const auto section = trends_section(estimate_trends(flights), {});
     ASSERT_TRUE(section);
     ASSERT_EQ(section->figures.size(), 1U);
     EXPECT_EQ(section->figures.front().id, "trends-1");
@@ -119,7 +128,7 @@ TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
     }
     const auto trends = estimate_trends(flights);
     EXPECT_THAT(to_text(table_of(trends)), HasSubstr("-60"));
-    EXPECT_THAT(trends_section(trends)->figures.front().description,
+    EXPECT_THAT(trends_section(trends, {})->figures.front().description,
                 HasSubstr("pack [% of its mean]: 100, -60 in 30 days (-60 to -60), falls"));
 }
 
@@ -127,26 +136,31 @@ TEST(PackWear, TakesTheCapacityThatIsKnown) {
     auto aged = test::aged_flights({0.0001, 0.001, 5}, 3);
     auto guessed = flown(aged, 0.0, 3);
     auto known = guessed;
-    add_state_of_health(guessed, 60);
+    auto refused = guessed;
+    add_health(guessed);
     constexpr double mean_ah = 2.3;
-    EXPECT_TRUE(add_state_of_health(known, 60, mean_ah).empty());
+    EXPECT_TRUE(add_health(known, {.capacity_ah = mean_ah}).notes.empty());
     double logarithms = 0.0;
     for (std::size_t f = 0; f < known.size(); ++f) {
         EXPECT_NE(guessed[f].capacity_ah, known[f].capacity_ah);
         logarithms += std::log(known[f].capacity_ah.value() / mean_ah);
     }
     EXPECT_NEAR(logarithms, 0.0, 0.01);
-    EXPECT_THROW(add_state_of_health(known, 60, 0.2), UsageError);
+    EXPECT_THROW(add_health(refused, {.capacity_ah = 0.2}), UsageError);
 }
 
-TEST(PackWear, SaysWhatIsNotKnown) {
-    std::vector<FlightTrendData> flights(2);
-    for (auto& flight : flights) {
-        flight.aircraft = "7 Wing";
-        flight.records.resize(1);
+TEST(PackWear, IsShownAsALedger) {
+    auto flights = flown(test::aged_flights({0.001, 0.0, 7}, 5), 0.0, 5);
+    auto uses = take_uses(flights);
+    for (auto& use : uses) {
+        use.pack = "A<1>";
+        use.named_by = answer::PackNaming::file;
     }
-    EXPECT_EQ(add_state_of_health(flights, 1),
-              std::vector<std::string>{"7 Wing: no resistance and no capacity of 2 flights, expected at most 1"});
+    const auto ledger = add_state_of_health(flights, std::move(uses));
+    const auto section = trends_section(estimate_trends(flights), ledger);
+    ASSERT_TRUE(section);
+    EXPECT_THAT(section->html, HasSubstr("pack A&lt;1&gt;: "));
+    EXPECT_THAT(section->html, HasSubstr("packs.toml"));
 }
 
 }  // namespace

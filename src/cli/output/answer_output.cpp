@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "cli/output/failsafe_output.h"
+#include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/screen/diagnostic_lines.h"
 
@@ -106,6 +107,15 @@ std::string pack_line(const PackAnswer& pack) {
     return text;
 }
 
+/// The health of each pack; empty where no flight shows one.
+std::string health_line(const std::vector<answer::Pack>& packs) {
+    std::vector<std::string> texts;
+    for (const auto& pack : packs)
+        texts.push_back(fmt::format("{}{}: {}", packs.size() > 1 ? pack.name + " " : "",
+                                    to_string(pack.condition.health), pack.condition.reason));
+    return fmt::format("{}", fmt::join(texts, "; "));
+}
+
 /// "return at 34 % (2040 mAh left, 22.10 V)".
 std::string action_text(const char* name, const answer::FailsafeAction& action) {
     auto text = fmt::format("{} at {} % ({} mAh left", name, action.soc_percent, action.remaining_mah);
@@ -168,6 +178,7 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
         field("prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "", csv_column{},
               not_in_json{}),
+        field("packs", &R::packs, "the packs of the flights"),
         field("failsafe", &R::failsafe, "values for an autopilot; null: unknown"),
         field("failsafe_missing", &R::failsafe_missing, "why there are none"),
         field("notes", at(&R::endurance, &Endurance::notes), "doubts of these answers"),
@@ -194,6 +205,7 @@ std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
     add("Distance", distance_line(answer));
     add("Speeds", speeds_line(answer.endurance));
     add("Pack", pack_line(answer.pack));
+    add("Health", health_line(answer.packs));
     add("Failsafe", failsafe_line(answer));
     const auto& error = answer.prediction_error_percent;
     add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,

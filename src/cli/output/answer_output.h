@@ -3,6 +3,7 @@
 #include "answer/answer.h"
 #include "answer/failsafe.h"
 #include "answer/pack_answer.h"
+#include "answer/pack_ledger.h"
 #include "cli/stage.h"
 
 #include <cstddef>
@@ -27,6 +28,7 @@ struct AircraftAnswer {
     answer::Question question;
     answer::Endurance endurance;
     answer::PackAnswer pack;
+    std::vector<answer::Pack> packs;               ///< that the flights name, with their health
     answer::Answered prediction_error_percent;     ///< of the energy of flights left out
     std::optional<answer::FailsafeCard> failsafe;  ///< of the mission that is asked for
     std::string failsafe_missing;                  ///< why there is none

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -145,6 +147,22 @@ std::map<std::string, std::string> monitor_kinds(const std::map<std::string, dou
     return kinds;
 }
 
+/// The serial numbers of the packs. Only monitors of smart batteries set them: elsewhere the parameter may be the number
+/// of a place (DroneCAN's battery_id), or of a pack that was changed since.
+std::string pack_serials(const std::map<std::string, double>& parameters) {
+    const std::set<double> smart{5.0, 7.0, 13.0, 14.0, 16.0, 19.0};  // Solo, SMBus, SUI3, SUI6, Maxell, Rotoye
+    constexpr int max_monitors = 9;
+    std::vector<double> serials;
+    for (int number = 1; number <= max_monitors; ++number) {
+        const auto prefix = number == 1 ? std::string("BATT") : fmt::format("BATT{}", number);
+        const auto kind = parameters.find(prefix + "_MONITOR");
+        const auto serial = parameters.find(prefix + "_SERIAL_NUM");
+        if (kind != parameters.end() && serial != parameters.end() && smart.contains(kind->second))
+            serials.push_back(serial->second);
+    }
+    return joined_serials(serials);
+}
+
 /// The kind of vehicle by the number of its software; empty if no parameter states it.
 std::string vehicle_of_parameters(const std::map<std::string, double>& parameters) {
     static const std::map<double, std::string> vehicles{
@@ -165,6 +183,7 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
     series.monitor_kinds = monitor_kinds(log.facts.parameters);
     series.monitor_capacities_ah = monitor_capacities_ah(log.facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
+    series.pack_serial = pack_serials(log.facts.parameters);
     const bool is_simulated =
         !found_in_texts(log.facts, "(SITL)").empty() ||
         std::ranges::any_of(log.messages, [](const auto& of) { return of.name == "SIM" || of.name == "SIM2"; });

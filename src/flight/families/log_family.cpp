@@ -175,6 +175,18 @@ void sort_tracks(std::vector<Track>& tracks) {
                              [&](const Track& track) { return std::ranges::find(names, track.name) - names.begin(); });
 }
 
+bool is_stated(double number) {
+    constexpr double unknown_16_bit = 65535.0;
+    return number > 0.0 && number != unknown_16_bit;
+}
+
+std::string joined_serials(const std::vector<double>& serials) {
+    std::string joined;
+    for (const auto serial : serials)
+        if (is_stated(serial)) joined += fmt::format("{}{:.0f}", joined.empty() ? "" : "+", serial);
+    return joined;
+}
+
 std::vector<telemetry::MessageRequest> family_messages(const LogFamily& family) {
     auto requests = family.more;
     const auto add = [&](const char* message, const char* field) {

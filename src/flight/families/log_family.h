@@ -75,6 +75,12 @@ std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, 
 std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, const LogFamily& family,
                                         const std::string& firmware, std::vector<Track>& tracks);
 
+/// Returns whether a smart battery states this number: 0, -1 and 65535 mean "unknown".
+bool is_stated(double number);
+
+/// Returns the serial numbers of packs as text, joined by "+", without unknown ones.
+std::string joined_serials(const std::vector<double>& serials);
+
 /// Sorts tracks in the order of track_names(); those of equal names keep their order.
 void sort_tracks(std::vector<Track>& tracks);
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
+#include <vector>
 
 /// Where PX4's ULog has the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
@@ -161,6 +163,25 @@ std::string vehicle_kind(const telemetry::AutopilotLog& log) {
     return rotary == nullptr ? "" : rotary->values.front() != 0.0 ? "rotorcraft" : "fixedwing";
 }
 
+/// The serial numbers and cycles of smart batteries, as the first message of each instance states them; its `id` is only
+/// a place in the vehicle.
+void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
+    const auto* status = sender.table("battery_status");
+    if (status == nullptr) return;
+    const auto* instance = status->column("multi_id");
+    const auto* serial = status->column("serial_number");
+    const auto* cycles = status->column("cycle_count");
+    std::set<double> seen;
+    std::vector<double> serials;
+    for (std::size_t row = 0; row < status->time_s.size(); ++row) {
+        if (!seen.insert(instance == nullptr ? 0.0 : instance->values[row]).second) continue;
+        if (serial != nullptr) serials.push_back(serial->values[row]);
+        if (cycles != nullptr && is_stated(cycles->values[row]))
+            series.pack_cycles = std::max(series.pack_cycles.value_or(0.0), cycles->values[row]);
+    }
+    series.pack_serial = joined_serials(serials);
+}
+
 void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     const auto& parameters = log.facts.parameters;
     const auto text_of = [&](const char* key) {
@@ -177,6 +198,7 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     series.firmware = vehicle_kind(log);
     series.monitor_capacities_ah =
         monitor_capacities_ah(parameters, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY");
+    add_packs(log.log.senders.front(), series);
 }
 
 }  // namespace
@@ -187,15 +209,16 @@ const LogFamily& sdlog2_family() {
 }
 
 const LogFamily& px4_family() {
-    static const LogFamily family{px4_tracks(),
-                                  {{"battery_status", "multi_id"},
-                                   {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
-                                   {"vehicle_air_data", "multi_id"},
-                                   {"airspeed", "multi_id"},
-                                   {"wind_estimate", "multi_id"},
-                                   {"vehicle_local_position", "multi_id"}},
-                                  describe_px4,
-                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}}};
+    static const LogFamily family{
+        px4_tracks(),
+        {{"battery_status", "multi_id"},
+         {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
+         {"vehicle_air_data", "multi_id"},
+         {"airspeed", "multi_id"},
+         {"wind_estimate", "multi_id"},
+         {"vehicle_local_position", "multi_id"}},
+        describe_px4,
+        {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}, {"battery_status", {"serial_number", "cycle_count"}}}};
     return family;
 }
 

@@ -10,7 +10,9 @@
 #include "helpers/test_paths.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -159,6 +161,48 @@ TEST(LogFamily, OfSdlog2IsReadAsPx4) {
     EXPECT_EQ(select_track(series, "armed").value.at(0), 1.0);
     EXPECT_EQ(select_track(series, "landed").value.at(0), 1.0);
     EXPECT_NEAR(select_track(series, "charge_ah").value.at(10), 1.0, 1e-9);
+}
+
+/// A PX4 log of two smart batteries with these serial numbers and cycles.
+FlightSeries with_smart_batteries(std::uint16_t first, std::uint16_t second, std::uint16_t cycles) {
+    auto log = test::ulog_header() +
+               test::ulog_message('F',
+                                  "battery_status:uint64_t timestamp;float voltage_v;float current_a;"
+                                  "uint16_t cycle_count;uint16_t serial_number;uint8_t id;") +
+               test::ulog_subscription(0, 7, "battery_status") + test::ulog_subscription(1, 8, "battery_status");
+    for (unsigned i = 0; i < 20; ++i)
+        for (const std::uint16_t topic : {7, 8})
+            log += test::ulog_message(
+                'D', test::little_endian(topic) + test::little_endian(std::uint64_t{10'000'000} + 200'000 * i + topic) +
+                         test::little_endian(22.0F) + test::little_endian(10.0F + 0.1F * static_cast<float>(i % 2)) +
+                         test::little_endian(cycles) + test::little_endian(topic == 7 ? first : second) + '\x01');
+    return series_of(log, "x.ulg");
+}
+
+TEST(LogFamily, SmartBatteriesOfPx4StateTheirSerialNumbers) {
+    EXPECT_EQ(with_smart_batteries(31415, 0, 12).pack_serial, "31415");
+    const auto two = with_smart_batteries(31415, 27182, 12);
+    EXPECT_EQ(two.pack_serial, "31415+27182");
+    EXPECT_EQ(two.pack_cycles, 12.0);
+    EXPECT_EQ(parse_series_csv(to_csv(two), "x.csv").pack_serial, "31415+27182");
+    EXPECT_EQ(parse_series_csv(to_csv(two), "x.csv").pack_cycles, 12.0);
+    const auto unknown = with_smart_batteries(0, 65535, 0);
+    EXPECT_EQ(unknown.pack_serial, "") << "the field id, 1, is a place in the vehicle";
+    EXPECT_FALSE(unknown.pack_cycles);
+}
+
+TEST(LogFamily, SerialNumbersOfArduPilotAreThoseOfSmbusMonitors) {
+    const auto serial_of = [](float monitor, float serial) {
+        auto log = test::dataflash_log(20) + test::dataflash_format(9, "PARM", "QNf", "TimeUS,Name,Value", 28);
+        for (const auto& [name, value] : {std::pair{"BATT_MONITOR", monitor}, std::pair{"BATT_SERIAL_NUM", serial}})
+            log += test::dataflash_message(9, test::little_endian(std::uint64_t{11'000'000}) + test::padded(name, 16) +
+                                                  test::little_endian(value));
+        return series_of(log).pack_serial;
+    };
+    EXPECT_EQ(serial_of(7.0F, 4711.0F), "4711");
+    EXPECT_EQ(serial_of(7.0F, -1.0F), "");
+    EXPECT_EQ(serial_of(4.0F, 4711.0F), "") << "an analog monitor does not read it";
+    EXPECT_EQ(serial_of(8.0F, 3.0F), "") << "DroneCAN's battery_id is a place";
 }
 
 TEST(LogFamily, OfAnotherAircraftIsRefused) {

@@ -1,15 +1,20 @@
-#include "cli/output/discharge_input.h"
+#include "cli/output/pack_input.h"
 
 #include "base/error.h"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::cli {
 
-std::vector<battery::DischargeRecord> discharge_records(const StageCall& call, FlightArguments flights,
-                                                        std::optional<std::size_t> circuit) {
+std::vector<answer::PackUse> read_pack_uses(const StageCall& call, FlightArguments flights, const PackArguments& packs,
+                                            std::optional<std::size_t> circuit) {
+    LogPlaces places;
+    std::vector<std::string> files;
     flights.load.flight_required =
         false;  // without altitude, power faults are not detected; the battery can be identified
     std::vector<std::pair<std::string, Diagnostic>> refusals;  // by file
@@ -20,21 +25,36 @@ std::vector<battery::DischargeRecord> discharge_records(const StageCall& call, F
             auto found = battery::discharge_records(loaded.data.circuits.size() > 1 || circuit
                                                         ? select_circuit(loaded.data, circuit.value_or(1))
                                                         : loaded.data);
+            files.push_back(file);
             for (const auto& text : found.notes)
                 add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
-            return std::move(found.records);
+            return answer::pack_uses(loaded.data, std::move(found.records), places.folder(file).filename().string());
         } catch (const InputError& error) {
             refusals.emplace_back(file,
                                   Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
                                              fmt::format("it is excluded: {}", error.what()), loaded.series.flight});
             refused.emplace(error);
-            return std::vector<battery::DischargeRecord>{};
+            return std::vector<answer::PackUse>{};
         }
     };
-    auto records = from_flights<battery::DischargeRecord>(call, flights, read);
-    if (records.empty() && refusals.size() == 1) throw InputError(*refused);
+    auto uses = from_flights<answer::PackUse>(call, flights, read);
+    if (uses.empty() && refusals.size() == 1) throw InputError(*refused);
     for (const auto& [file, refusal] : refusals) leave_out(call, flights, file, refusal);
-    if (records.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
+    if (uses.empty() && !refusals.empty()) throw InputError({}, "no flight can be used");
+    name_packs(call, packs, files, uses);
+    return uses;
+}
+
+std::vector<battery::DischargeRecord> records_of(const StageCall& call, const std::vector<answer::PackUse>& uses) {
+    std::set<std::string> packs;
+    std::vector<battery::DischargeRecord> records;
+    for (const auto& use : uses) {
+        packs.insert(use.pack.empty() ? "unnamed" : use.pack);
+        records.push_back(use.record);
+    }
+    if (packs.size() > 1)
+        warn(call, fmt::format("one battery is identified from flights of {} packs: {}; --pack chooses one",
+                               packs.size(), fmt::join(packs, ", ")));
     return records;
 }
 
