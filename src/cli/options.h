@@ -28,7 +28,7 @@ struct OptionDetails {
     double max = std::numeric_limits<double>::infinity();
     bool above_min = false;  ///< min itself is refused
     bool below_max = false;  ///< max itself is refused
-    std::string unit = {};   ///< of the number
+    std::string unit = {};   ///< of the number; of a time (s) min and h are read as well
     double scale = 1.0;      ///< a whole number is multiplied by this
     std::string hint = {};   ///< how to correct a number outside the range
     FileRole file = FileRole::none;

@@ -278,7 +278,7 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     }
     print_diagnostics(call);
     call.inputs = given.inputs;  // as they were typed
-    if (code == ok || code == input_rejected) note_written(stage, call);
+    if (code == ok || code == input_rejected || code == requirement_missed) note_written(stage, call);
     return code == ok && !call.skipped->empty() ? input_rejected : code;
 }
 
