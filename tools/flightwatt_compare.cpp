@@ -64,7 +64,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
                                         "they differ",
                                         summary.mission));
         }
-        if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
+        if (summary.samples && !call.json)
+            cli::note(call, call.notes ? describe(*summary.samples) : describe_briefly(*summary.samples));
         if (summary.by_flights && !call.json)
             cli::note(call, fmt::format("{}: {}", summary.mission, describe(*summary.by_flights)));
         const bool lacks_plan = summary.schedule == mission::ScheduleOrigin::infeasible;

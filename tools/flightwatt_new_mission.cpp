@@ -52,6 +52,7 @@ struct NewMissionArguments {
     std::vector<std::string> blocks;
     std::optional<std::string> wind;
     std::optional<double> payload_kg;
+    std::optional<double> takeoff_mass_kg;
     std::optional<double> cruise_s;
     std::size_t packs = 1;
     bool shows_all_keys = false;
@@ -97,11 +98,12 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.is_planned = arguments.is_planned;
     fresh.cruise_s = arguments.cruise_s;
     fresh.payload_kg = arguments.payload_kg;
+    fresh.takeoff_mass_kg = arguments.takeoff_mass_kg;
     fresh.packs = arguments.packs;
     fresh.shows_all_keys = arguments.shows_all_keys;
     if (arguments.plan)
         fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
-                                           new_airspeed_m_per_s(fresh.model));
+                                            mission::new_airspeed_m_per_s(fresh.model));
     if (arguments.wind) fresh.wind = parse_wind(*arguments.wind);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
@@ -172,10 +174,14 @@ key as a comment, with its meaning and an example.)"};
     options.add("planned", arguments.is_planned,
                 "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
     options.add("name", arguments.name, {.value = "NAME"}, "the mission's name; default: FILE's");
-    options.add("cruise", arguments.cruise_s, {.value = "TIME", .min = 0.0, .unit = "s", .excludes = {"plan"}},
+    options.add("cruise", arguments.cruise_s,
+                {.value = "TIME", .min = 0.0, .above_min = true, .unit = "s", .excludes = {"plan"}},
                 "duration of the cruise: 1800, 30min or 0.5h; default: the mean of the model's flights");
     options.add("payload", arguments.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
                 "what the aircraft carries beyond its own mass");
+    options.add("takeoff-mass", arguments.takeoff_mass_kg,
+                {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}},
+                "its mass as its flights were flown, where they do not show the effect of payload");
     options.add("plan", arguments.plan, cli::input_file("FILE"),
                 "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
     options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},

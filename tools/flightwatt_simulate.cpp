@@ -80,7 +80,8 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     } else {
         cli::note(call, describe(summary));
         cli::note_power_model(call, setup_of(mission));
-        if (summary.samples) cli::note(call, describe(*summary.samples));
+        if (summary.samples)
+            cli::note(call, call.notes ? describe(*summary.samples) : describe_briefly(*summary.samples));
     }
     return check_requirement(call, arguments.requirement, {summary});
 }

@@ -180,11 +180,14 @@ void Options::append(Option option, Assign assign) {
     options_.push_back(std::move(option));
 }
 
-std::string Options::help_text(bool all) const {
+std::string Options::help_text(bool all, std::size_t columns) const {
+    constexpr std::size_t narrowest = 40;
+    constexpr std::size_t widest = 120;
+    const auto width = static_cast<unsigned>(std::clamp(columns, narrowest, widest));
     std::ostringstream text;
     for (std::size_t i = 0; i < options_.size();) {
         const auto& title = options_[i].group;
-        po::options_description group(title);
+        po::options_description group(title, width, width / 2);
         bool is_empty = true;
         for (; i < options_.size() && options_[i].group == title; ++i) {
             if (options_[i].is_expert && !all) continue;

@@ -146,8 +146,8 @@ class Options {
     const std::vector<Option>& all() const { return options_; }
     const Option* find(const std::string& name) const;
 
-    /// --help's lists, of expert options too with `all`.
-    std::string help_text(bool all) const;
+    /// --help's lists in lines of so many characters, of expert options too with `all`.
+    std::string help_text(bool all, std::size_t columns = 80) const;
 
     /// A line an option with name, short name, kind, value and description, between tabs: for completion and man pages.
     std::string list_text() const;

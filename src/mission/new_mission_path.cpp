@@ -65,7 +65,7 @@ std::vector<std::string> only_block(std::string_view text, const std::string& fi
     if (flown.size() == 1) return flown;
     throw UsageError(
         fmt::format("{} has several blocks: name those of the mission, in the order of the flight, each "
-                    "with --block NAME; that are flown: {}",
+                    "with --block NAME. Those with a path: {}",
                     file, short_list(flown)));
 }
 

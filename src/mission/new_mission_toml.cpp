@@ -73,6 +73,7 @@ void add_aircraft(const NewMission& mission, Values& values) {
     values["physical"] = if_so(knows_airspeed(model) && !mission.flown);
     values["not_physical"] = if_so(!knows_airspeed(model));
     values["airspeed"] = fmt::format("{:.1f}", new_airspeed_m_per_s(model));
+    values["takeoff_mass"] = mission.takeoff_mass_kg ? fmt::format("{}", *mission.takeoff_mass_kg) : "";
     values["payload"] = mission.payload_kg ? fmt::format("{}", *mission.payload_kg) : "";
 }
 

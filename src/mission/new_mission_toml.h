@@ -31,6 +31,7 @@ struct NewMission {
     bool is_planned = false;              ///< the schedule is left to `flightwatt plan`
     std::optional<double> cruise_s = {};  ///< none: the mean of the model's flights
     std::optional<double> payload_kg = {};
+    std::optional<double> takeoff_mass_kg = {};
     std::optional<NewPath> flown = {};    ///< then it decides the duration of the cruise
     std::optional<path::Wind> wind = {};  ///< along the path
     std::size_t packs = 1;

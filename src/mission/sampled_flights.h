@@ -23,7 +23,10 @@ struct SamplingOptions {
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options);
 
-/// Text for people.
+/// Text for people: how many keep the reserve, and with what charge 90 of 100 land.
+std::string describe_briefly(const MonteCarloResult& flights);
+
+/// The same with intervals, quantiles and the sources of the variability.
 std::string describe(const MonteCarloResult& flights);
 
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent
