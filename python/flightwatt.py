@@ -25,7 +25,8 @@ SKIPPED_INPUT = 3  # exit code: some inputs were skipped (with a result), or no 
 
 
 class FlightWattError(RuntimeError):
-    """A stage ended without a result. `exit_code`: 2 usage, 3 input rejected, 4 no usable result. `messages`: its text."""
+    """A stage ended without a result. `exit_code`: 2 usage, 3 input rejected, 4 no usable result,
+    5 a mission misses what `require` demands. `messages`: its text."""
 
     def __init__(self, command_line, exit_code, messages):
         super().__init__(f"{' '.join(command_line)}: exit code {exit_code}\n{messages}")

@@ -3,10 +3,12 @@
 #include "base/input_file.h"
 #include "base/toml_reader.h"
 #include "cli/stage.h"
+#include "cli/terminal.h"
 #include "stages.h"
 
 #include <filesystem>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
 namespace {
@@ -32,8 +34,8 @@ const std::vector<StageGroup>& stage_groups() {
         {"Logs",
          {{"init", "a folder for an aircraft, with the four commands from logs to a report", stages::init_stage},
           {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
-          {"batch", "parse, segment and fit every log of a folder, incrementally", stages::batch_stage},
-          {"parse", "a Paparazzi log to a table of its power samples (CSV)", stages::parse_stage},
+          {"batch", "parse, segment and fit every log of a folder (.data, .bin, .ulg, CSV)", stages::batch_stage},
+          {"parse", "a log (.data, .bin, .ulg, CSV) to a table of its samples (CSV)", stages::parse_stage},
           {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
           {"merge", "join the folders of several batches into one", stages::merge_stage},
           {"trends", "ageing of aircraft and pack: energy, power and resistance over the dates of flights",
@@ -46,7 +48,7 @@ const std::vector<StageGroup>& stage_groups() {
           {"profile", "software to its power by quality of service, measured while it runs", stages::profile_stage},
           {"diff", "differences of two models, batches or missions, and their significance", stages::diff_stage}}},
         {"Missions",
-         {{"new-mission", "a mission file to begin with, every key explained", stages::new_mission_stage},
+         {{"new-mission", "a mission file to begin with, also of a flight plan", stages::new_mission_stage},
           {"path", "the path of a mission leg by leg; of a log as waypoints", stages::path_stage},
           {"simulate", "a mission file to its state of charge over time", stages::simulate_stage},
           {"plan", "the schedule of maximum utility that lands a mission with its reserve", stages::plan_stage},
@@ -71,11 +73,23 @@ std::vector<Stage> all_stages() {
     return all;
 }
 
+/// The way from logs to a first answer, before the stages.
+std::string start_text() {
+    return "\nTo begin, with the logs of an aircraft (.bin, .ulg, .data with its .log, CSV):\n"
+           "  flightwatt LOGS --capacity 5   how long and how far it flies on a pack of 5 Ah, and a page\n"
+           "  flightwatt init my-drone       a folder for them, with the commands up to missions\n";
+}
+
 std::string stage_list() {
+    constexpr std::size_t name_width = 14;
     std::string text;
     for (const auto& [title, members] : stage_groups()) {
         text += fmt::format("\n{}:\n", title);
-        for (const auto& stage : members) text += fmt::format("  {:<11} {}\n", stage.name, stage.summary);
+        for (const auto& stage : members) {
+            auto summary = cli::fitted(std::string(stage.summary), stdout, name_width);
+            boost::algorithm::replace_all(summary, "\n", "\n" + std::string(name_width, ' '));
+            text += fmt::format("  {:<11} {}\n", stage.name, summary);
+        }
     }
     return text;
 }
@@ -132,10 +146,10 @@ int run_front(const std::string& word) {
             "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
             "usage: flightwatt LOG|FOLDER... [--capacity AH]    how long and how far it flies\n"
             "       flightwatt STAGE [arguments]               more: flightwatt help STAGE\n" +
-            stage_list());
+            start_text() + stage_list());
     } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
-    } else if (word == "--version") {
+    } else if (word == "--version" || word == "version") {
         cli::print(fmt::format("flightwatt {}\n", cli::version_text()));
     } else {
         if (const auto command = command_for(word); !command.empty())

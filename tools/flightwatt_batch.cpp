@@ -26,8 +26,8 @@ using namespace flightwatt;
 batch::BatchProgress progress_of(const cli::StageCall& call, cli::ProgressBar& bar) {
     return [&](std::size_t done, std::size_t all, const batch::BatchFlight& flight) {
         if (cli::standard_error_terminal() != nullptr) return bar.show(done, all);
-        const auto* what = flight.record.is_of_other_aircraft ? "left out"
-                           : !flight.record.accepted          ? "rejected"
+        const auto* what = flight.record.is_of_other_aircraft ? "not used, of another aircraft"
+                           : !flight.record.accepted          ? "not used"
                            : flight.log_is_missing            ? "kept, its log is missing"
                            : flight.was_up_to_date            ? "up to date"
                                                               : "done";
@@ -84,7 +84,7 @@ std::string flights_text(const cli::StageCall& call, const batch::BatchFlights& 
 /// 3 if a log of this run was rejected.
 int exit_code(const cli::StageCall& call, const batch::Totals& totals) {
     if (totals.rejected_of_this_run == 0) return cli::ok;
-    cli::note(call, fmt::format("{} of {} logs rejected; the others are done", totals.rejected_of_this_run,
+    cli::note(call, fmt::format("{} of {} logs not used; the others are done", totals.rejected_of_this_run,
                                 totals.of_this_run));
     return cli::input_rejected;
 }
@@ -110,8 +110,16 @@ std::optional<cli::FittedBatch> finish_folder(const cli::StageCall& call, const 
         remove_model(call, options.out);
     if (call.json) return fitted;
     const auto screen = screen_of(call);
-    cli::print(shown + (fitted ? "\n" + screen_text(fitted->table, screen, {"Table I", {}}) : "") +
-               (fitted && fitted->physical ? "\n" + cli::physical_text(*fitted->physical, screen) : ""));
+    cli::print(shown);
+    if (!fitted) return fitted;
+    const bool has_details = call.notes || published;
+    cli::print("\n" + (has_details ? screen_text(fitted->table, screen, {"Table I", {}})
+                                   : screen_text(cli::mean_power_table(fitted->fit.model), screen,
+                                                 {"mean power of the phases; --notes: Table I", {}})));
+    if (fitted->physical && has_details)
+        cli::print("\n" + cli::physical_text(*fitted->physical, screen));
+    else if (fitted->physical && fitted->physical->speeds)
+        cli::print(fmt::format("\nSpeed to fly\n{}\n", fmt::join(cli::speed_lines(*fitted->physical->speeds), "\n")));
     return fitted;
 }
 
@@ -183,7 +191,7 @@ int run_over_logs(const cli::StageCall& call, const cli::BatchArguments& argumen
 int flightwatt::stages::batch_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "batch", "LOG|FOLDER... -o OUT",
-        R"(Parses and segments every .data log (folders are searched to the bottom) into OUT/flights, several at a
+        R"(Parses and segments every log (.data, .bin, .ulg, CSV; folders are searched to the bottom) into OUT/flights, several at a
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
 others are processed; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is missing;

@@ -1,6 +1,7 @@
 // Several mission files to a table, ranked by what they leave in the battery.
 
 #include "cli/output/mission_output.h"
+#include "cli/output/requirement.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -63,7 +64,8 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
                                         "they differ",
                                         summary.mission));
         }
-        if (summary.samples && !call.json) cli::note(call, describe(*summary.samples));
+        if (summary.samples && !call.json)
+            cli::note(call, call.notes ? describe(*summary.samples) : describe_briefly(*summary.samples));
         if (summary.by_flights && !call.json)
             cli::note(call, fmt::format("{}: {}", summary.mission, describe(*summary.by_flights)));
         const bool lacks_plan = summary.schedule == mission::ScheduleOrigin::infeasible;
@@ -78,18 +80,21 @@ int explain(const cli::StageCall& call, const std::vector<mission::MissionSummar
     return code;
 }
 
-int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& arguments) {
+int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& arguments,
+                     const cli::Requirement& requirement) {
     const bool is_sampled = arguments.samples.has_value();
     const auto form = form_of(call);
     // All are read before the first is run: a bad file leaves no half answer.
     std::vector<mission::MissionVariant> missions;
     missions.reserve(call.inputs.size());
-    for (const auto& file : call.inputs) missions.push_back(mission::read_mission(file, {true, std::nullopt}));
+    cli::MissionNames names;
+    for (const auto& file : call.inputs)
+        missions.push_back(names.made_unique(call, mission::read_mission(file, {true, std::nullopt})));
     for (const auto& mission : missions) cli::warn_of_setup(call, setup_of(mission));
     std::vector<mission::MissionSummary> summaries;
     summaries.reserve(missions.size());
     for (const auto& mission : missions) summaries.push_back(simulated_summary(mission, arguments));
-    if (is_sampled &&
+    if (is_sampled && !requirement.probability &&
         std::ranges::none_of(missions, [](const auto& mission) { return has_uncertainty(setup_of(mission)); })) {
         require_uncertainty(setup_of(missions.front()));  // throws, with the reason
     }
@@ -98,7 +103,8 @@ int compare_missions(const cli::StageCall& call, const cli::SamplingArguments& a
     if (call.json) cli::print_json(call, cli::MissionComparison{cli::ranked_missions(ranking)});
     for (const auto& mission : missions)
         if (!call.json) cli::note_power_model(call, setup_of(mission));
-    return explain(call, ranking, is_sampled);
+    const int code = explain(call, ranking, is_sampled);
+    return check_requirement(call, requirement, ranking) == cli::ok ? code : cli::requirement_missed;
 }
 
 }  // namespace
@@ -116,6 +122,9 @@ with all digits.)"};
                       "flightwatt compare a.toml b.toml --samples 2000 -o ranking.csv"};
     stage.uses_threads = stage.shows_table = true;
     cli::SamplingArguments arguments;
+    cli::Requirement requirement;
     add_sampling_options(stage.options, arguments);
-    return cli::run_stage(argc, argv, stage, [&](const auto& call) { return compare_missions(call, arguments); });
+    add_require_option(stage.options, requirement, arguments);
+    return cli::run_stage(argc, argv, stage,
+                          [&](const auto& call) { return compare_missions(call, arguments, requirement); });
 }

@@ -123,7 +123,7 @@ int fit(const cli::StageCall& call, FitStageArguments arguments) {
 
 int flightwatt::stages::fit_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "fit", "FLIGHT.data|SERIES.csv|FOLDER...",
+        "fit", "LOG|SERIES.csv|FOLDER...",
         R"(Fits the mechanical power of take-off, cruise and landing: a third-order Fourier series a phase, one
 frequency for all flights, averaged over the flights with weights. A phase is predicted by its mean power
 where the samples do not determine the curve, or it predicts flights left out of the fit worse; the model's

@@ -68,7 +68,7 @@ int make_folder(const cli::StageCall& call, const std::optional<double>& capacit
         cli::print_json(call, InitOutput{root, {folders.begin(), folders.end()}, list});
     } else {
         cli::print(fmt::format(
-            "{0}/logs      put the logs of your flights here\n"
+            "{0}/logs      put each flight's log here: .bin, .ulg, CSV, or .data with its .log\n"
             "{0}/fits      models, and what was found of each flight\n"
             "{0}/missions  what is to be flown\n"
             "{1}  the four commands from logs to report.html{2}\n",

@@ -1,5 +1,6 @@
-// A mission file to begin with: every key explained, made for the files that it names.
+// A mission file to begin with, made for the files that it names.
 
+#include "base/number.h"
 #include "battery/battery.h"
 #include "battery/battery_toml.h"
 #include "cli/output/mission_output.h"
@@ -47,7 +48,27 @@ struct NewMissionArguments {
     std::optional<std::string> parameters;
     bool is_planned = false;
     std::optional<std::string> name;
+    std::optional<std::string> plan;
+    std::vector<std::string> blocks;
+    std::optional<std::string> wind;
+    std::optional<double> payload_kg;
+    std::optional<double> takeoff_mass_kg;
+    std::optional<double> cruise_s;
+    std::size_t packs = 1;
+    bool shows_all_keys = false;
+    bool replaces = false;
 };
+
+/// "6@250": 6 m/s from 250 degrees.
+path::Wind parse_wind(const std::string& text) {
+    const auto at = text.find('@');
+    const auto speed = parse_number(std::string_view(text).substr(0, at));
+    const auto from = at == std::string::npos ? std::nullopt : parse_number(std::string_view(text).substr(at + 1));
+    if (!speed || !from)
+        throw UsageError(
+            fmt::format("--wind {}: expected SPEED@FROM: 6@250 is 6 m/s from 250 degrees", one_line(text)));
+    return {*speed, *from};
+}
 
 std::string required_file(const std::optional<std::string>& file, const char* option, const char* made_by) {
     if (!file) throw UsageError(fmt::format("expected --{} FILE, from `flightwatt {}`", option, made_by));
@@ -63,14 +84,10 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     return name;
 }
 
-int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arguments) {
+/// The mission that the options describe, to be written to `file`.
+mission::NewMission described_mission(const NewMissionArguments& arguments, const std::filesystem::path& file) {
     const auto mechanical = required_file(arguments.model, "model", "batch");
     const auto pack = required_file(arguments.battery, "battery", "battery");
-    const std::filesystem::path file = call.output.value_or("mission.toml");
-    std::error_code none;
-    if (call.output && std::filesystem::exists(file, none)) {
-        throw OutputError(fmt::format("{} is there already and stays as it is: give another name", file.string()));
-    }
     const auto folder = std::filesystem::absolute(file).parent_path();
     mission::NewMission fresh;
     fresh.name = arguments.name.value_or(file.stem().string());
@@ -79,6 +96,15 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
     fresh.is_planned = arguments.is_planned;
+    fresh.cruise_s = arguments.cruise_s;
+    fresh.payload_kg = arguments.payload_kg;
+    fresh.takeoff_mass_kg = arguments.takeoff_mass_kg;
+    fresh.packs = arguments.packs;
+    fresh.shows_all_keys = arguments.shows_all_keys;
+    if (arguments.plan)
+        fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
+                                            mission::new_airspeed_m_per_s(fresh.model));
+    if (arguments.wind) fresh.wind = parse_wind(*arguments.wind);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
     if (arguments.parameters) boost::algorithm::split(naming.parameters, *arguments.parameters, boost::is_any_of(","));
@@ -87,13 +113,27 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
                                     compute::read_power_profile(profile, naming)});
     }
     if (fresh.is_planned && fresh.components.empty()) {
-        throw UsageError("--plan: expected --profile FILE of the software whose schedule is to be planned");
+        throw UsageError("--planned: expected --profile FILE of the software whose schedule is to be planned");
     }
-    auto text = new_mission_toml(fresh);
-    if (arguments.parameters) boost::algorithm::replace_all(text, "\n#parameters = [", "\nparameters = [");
+    fresh.states_parameters = arguments.parameters.has_value();
+    return fresh;
+}
+
+int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arguments) {
+    const std::filesystem::path file = call.output.value_or("mission.toml");
+    std::error_code none;
+    if (call.output && !arguments.replaces && std::filesystem::exists(file, none))
+        throw UsageError(
+            fmt::format("{} is there already and stays as it is: give another name, or --force to "
+                        "replace it",
+                        file.string()));
+    const auto fresh = described_mission(arguments, file);
+    const auto text = new_mission_toml(fresh);
     const auto read = mission::parse_mission(text, file, {.allow_unplanned = fresh.is_planned});
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
+    if (fresh.flown)
+        for (const auto& chosen : fresh.flown->chosen) cli::note(call, fmt::format("chosen: {}", chosen));
     if (call.json) {
         NewMissionOutput output{fresh.name, {}, fresh.is_planned};
         for (const auto& component : fresh.components) output.components.push_back(component.name);
@@ -110,15 +150,17 @@ int flightwatt::stages::new_mission_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "new-mission", "--model MODEL.toml --battery PACK.toml [--profile P.csv]...",
         R"(Writes a mission file to begin with, for that aircraft, pack and software. It simulates as it is: each
-component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. It contains every other key of a
-mission as a comment, with its meaning and an example. An existing file is not replaced.)"};
-    stage.next = [](const auto& call) { return call.has("plan") ? "flightwatt plan {}" : "flightwatt simulate {}"; };
+component runs at the middle of what was profiled, and 20 % of charge are kept in reserve. --plan names what is flown:
+a plan of QGroundControl or ArduPilot, a flight plan of Paparazzi, or an area (GeoJSON, KML). --all-keys adds every other
+key as a comment, with its meaning and an example.)"};
+    stage.next = [](const auto& call) { return call.has("planned") ? "flightwatt plan {}" : "flightwatt simulate {}"; };
     stage.json_schema = cli::document_schema<NewMissionOutput>;
     stage.min_inputs = 0;
     stage.max_inputs = 0;
     stage.output_help = "write the mission to FILE, which names its files relative to it";
     stage.examples = {"flightwatt new-mission --model model.toml --battery pack.toml -o first.toml",
-                      "flightwatt new-mission --model model.toml --battery pack.toml --profile dnn.csv --plan"};
+                      "flightwatt new-mission --model model.toml --battery pack.toml --plan survey.plan --wind 6@250",
+                      "flightwatt new-mission --model model.toml --battery pack.toml --profile dnn.csv --planned"};
     NewMissionArguments arguments;
     auto& options = stage.options;
     options.add("model", arguments.model,
@@ -129,8 +171,26 @@ mission as a comment, with its meaning and an example. An existing file is not r
                 "software on board, from flightwatt profile; may be given several times");
     options.add("parameters", arguments.parameters, {.value = "A,B", .needs = {"profile"}},
                 "names of the profiles' parameters, where these have flags (powprofiler)");
-    options.add("plan", arguments.is_planned,
+    options.add("planned", arguments.is_planned,
                 "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
     options.add("name", arguments.name, {.value = "NAME"}, "the mission's name; default: FILE's");
+    options.add("cruise", arguments.cruise_s,
+                {.value = "TIME", .min = 0.0, .above_min = true, .unit = "s", .excludes = {"plan"}},
+                "duration of the cruise: 1800, 30min or 0.5h; default: the mean of the model's flights");
+    options.add("payload", arguments.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
+                "what the aircraft carries beyond its own mass");
+    options.add("takeoff-mass", arguments.takeoff_mass_kg,
+                {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}},
+                "its mass as its flights were flown, where they do not show the effect of payload");
+    options.add("plan", arguments.plan, cli::input_file("FILE"),
+                "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
+    options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},
+                "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
+    options.add("wind", arguments.wind, {.value = "SPEED@FROM", .needs = {"plan"}},
+                "wind along the plan: 6@250 is 6 m/s from 250 degrees");
+    options.add("packs", arguments.packs, {.value = "N", .min = 1.0, .max = 1000.0},
+                "fly the cruise with N packs, changed on the ground");
+    options.add("all-keys", arguments.shows_all_keys, "write every key, explained, those not used as comments");
+    options.add("force", arguments.replaces, "replace FILE of -o");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_new_mission(call, arguments); });
 }

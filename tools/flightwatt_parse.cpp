@@ -82,7 +82,7 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
 
 int flightwatt::stages::parse_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "parse", "FLIGHT.data",
+        "parse", "LOG",
         R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card, a .bin of ArduPilot, a .ulg of PX4
 (also .gz, .bz2, .xz, .zst), or a CSV with --columns, and
 writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,

@@ -26,7 +26,7 @@ namespace {
 
 using namespace flightwatt;
 
-/// JSON of --longest-cruise and --largest-payload.
+/// JSON of --longest-cruise and --spare-power.
 struct PlanLimit {
     const mission::MissionSetup* mission = nullptr;
     std::string key;
@@ -74,7 +74,7 @@ struct MissionFile {
 struct PlanArguments {
     std::optional<double> probability;
     bool longest_cruise = false;
-    bool largest_payload = false;
+    bool spare_power = false;
 };
 
 std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
@@ -100,7 +100,8 @@ void note_sources(const cli::StageCall& call, const PlanArguments& arguments, co
     const auto exactness =
         standard_error < min_shown_error ? "" : fmt::format(" (computed to +- {:.4f})", standard_error);
     cli::note(call, fmt::format("{}: probability {}{} over flights as --samples draws them; {}", mission.name,
-                                *arguments.probability, exactness, describe(sources)));
+                                *arguments.probability, exactness,
+                                call.notes ? describe(sources) : "--notes shows how flights differ"));
 }
 
 [[noreturn]] void refuse_infeasible(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file,
@@ -192,9 +193,9 @@ int print_reach(const cli::StageCall& call, const PlanArguments& arguments, cons
 
 int plan_file(const cli::StageCall& call, const PlanArguments& arguments) {
     const MissionFile file{call.inputs.front(), read_file(call.inputs.front())};
-    if (arguments.longest_cruise || arguments.largest_payload) require_single_flight(setup_of(file.read()));
+    if (arguments.longest_cruise || arguments.spare_power) require_single_flight(setup_of(file.read()));
     if (arguments.longest_cruise) return print_reach(call, arguments, file);
-    if (arguments.largest_payload) {
+    if (arguments.spare_power) {
         const auto mission = file.read();
         return print_limit(call, arguments, setup_of(mission), "largest_payload_w", "W",
                            largest_payload(mission, arguments.probability));
@@ -209,14 +210,14 @@ int flightwatt::stages::plan_stage(int argc, char** argv) {
         "plan", "MISSION.toml",
         R"(Computes the schedule of maximum utility that lands with the reserve, with a proven bound on the utility
 of any other. The result is the mission with that schedule, for simulate and compare. Entries of
-[[schedule]] next to [plan] are fixed. --longest-cruise and --largest-payload take the mission's own schedule, or the
+[[schedule]] next to [plan] are fixed. --longest-cruise and --spare-power take the mission's own schedule, or the
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
 cut-off voltage, the battery is simulated for each candidate schedule. A mission with [packs] is divided into flights,
 and the result is a table of them (CSV); their schedules are in --json.)"};
     stage.max_inputs = 1;
     stage.next = [](const auto& call) {
         const bool is_table = std::filesystem::path(*call.output).extension() == ".csv";  // of a mission with [packs]
-        return is_table || call.has("longest-cruise") || call.has("largest-payload") ? "" : "flightwatt simulate {}";
+        return is_table || call.has("longest-cruise") || call.has("spare-power") ? "" : "flightwatt simulate {}";
     };
     stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit, mission::PackFlights>;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
@@ -231,7 +232,9 @@ and the result is a table of them (CSV); their schedules are in --json.)"};
         "longest-cruise", arguments.longest_cruise,
         "instead: the longest cruise that lands with the reserve [s]; of a [path] the maximum number of circles, or "
         "without any the maximum distance from where the mission returns [m]",
-        {.excludes = {"largest-payload"}});
-    options.add("largest-payload", arguments.largest_payload, "instead: the largest additional constant power [W]");
+        {.excludes = {"spare-power"}});
+    options.add("spare-power", arguments.spare_power,
+                "instead: the largest constant power that may be drawn in addition, by a camera say [W]",
+                {.old_name = "largest-payload"});
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return plan_file(call, arguments); });
 }

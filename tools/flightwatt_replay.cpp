@@ -70,7 +70,7 @@ int replay(const cli::StageCall& call, const ReplayArguments& arguments) {
 
 int flightwatt::stages::replay_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "replay", "FLIGHT.data|SERIES.csv|FOLDER... --mission MISSION.toml",
+        "replay", "LOG|SERIES.csv|FOLDER... --mission MISSION.toml",
         R"(Evaluates schedules on measured flights: the measured power of each flight, phase by phase, and the
 computing power of a schedule together deplete the mission's battery. Before a flight, only a model fitted to
 the other flights is known. Schedules:

@@ -49,10 +49,11 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     inputs.published_file = arguments.published;
     inputs.with_replay = arguments.with_replay;
     if (arguments.outline) inputs.outlines = report::read_outlines(*arguments.outline);
+    cli::MissionNames names;
     for (const auto& input : call.inputs) {
         std::error_code error;
         if (!std::filesystem::is_directory(input, error)) {
-            const auto read = mission::read_mission(input, {true, std::nullopt});
+            const auto read = names.made_unique(call, mission::read_mission(input, {true, std::nullopt}));
             cli::warn_of_setup(call, setup_of(read));
             if (!setup_of(read).packs || inputs.with_replay) {
                 inputs.missions.push_back(read);

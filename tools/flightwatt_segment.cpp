@@ -145,7 +145,7 @@ int segment_flights(const cli::StageCall& call, flight::LoadOptions options, boo
 
 int flightwatt::stages::segment_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "segment", "FLIGHT.data|SERIES.csv|FOLDER...",
+        "segment", "LOG|SERIES.csv|FOLDER...",
         R"(Finds every sortie in a log by altitude and throttle and writes its phases as CSV: take-off from
 lift-off until the height held is reached (of a rotorcraft: until its climb ends), cruise, landing from
 where that height is left until touchdown. TAKEOFF messages, mode and block are shown with each edge for comparison; they are not used.

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/requirement.h"
 #include "cli/output/stage_options.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
@@ -24,6 +25,7 @@ struct SimulateArguments {
     std::optional<std::string> schedule_file;
     cli::SamplingArguments sampling;
     std::optional<std::string> samples_file;
+    cli::Requirement requirement;
 };
 
 /// The mission with the schedule that was flown, wherever it came from.
@@ -43,6 +45,7 @@ void sample(const SimulateArguments& arguments, const mission::PreparedMission& 
     const auto& file = arguments.samples_file;
     const auto options = sampling_options(arguments.sampling, file.has_value());
     if (!options) return;
+    if (arguments.requirement.probability && !has_uncertainty(prepared.setup)) return;
     summary.samples = sample_flights(prepared, disturbed_by, *options);
     if (file) write_file_atomically(*file, to_csv(summary.samples->bands));
 }
@@ -55,9 +58,10 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     const bool draws = arguments.sampling.samples || arguments.sampling.disturbances || arguments.schedule_file;
     if (setup_of(mission).packs && !draws) {
         const auto all = mission::fly_packs(mission, {.output_s = arguments.step_s});
+        if (!all.suffice && arguments.requirement.text) return report_missed(call, describe(all));
         print_packs(call, all, to_csv(all.curve),
                     {all.setup.name, {"time_s", "phase", "soc_percent", "power_w"}, rows});
-        return cli::ok;
+        return check_requirement(call, arguments.requirement, {all.total});
     }
     const auto disturbed_by = read_disturbances(arguments.sampling, setup_of(mission));
     const auto prepared = prepare_mission(mission);
@@ -65,7 +69,8 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     steps.output_s = arguments.step_s;
     auto flight = simulate_prepared(prepared, steps, disturbed_by);
     auto& summary = flight.simulation.summary;
-    if (summary.undeliverable) throw NoResultError(describe(summary));
+    if (summary.undeliverable && !arguments.requirement.text) throw NoResultError(describe(summary));
+    if (summary.undeliverable) return check_requirement(call, arguments.requirement, {summary});
     sample(arguments, prepared, disturbed_by, summary);
     write_schedule(call, arguments.schedule_file, text, prepared, flight);
     write_csv_result(call, to_csv(flight.simulation.curve),
@@ -75,9 +80,10 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     } else {
         cli::note(call, describe(summary));
         cli::note_power_model(call, setup_of(mission));
-        if (summary.samples) cli::note(call, describe(*summary.samples));
+        if (summary.samples)
+            cli::note(call, call.notes ? describe(*summary.samples) : describe_briefly(*summary.samples));
     }
-    return cli::ok;
+    return check_requirement(call, arguments.requirement, {summary});
 }
 
 }  // namespace
@@ -98,7 +104,8 @@ their final state of charge; the CSV stays that of the mission as it is stated.)
     stage.json_schema = cli::document_schema<mission::MissionSummary, mission::PackFlights>;
     stage.shows_table = true;
     stage.examples = {"flightwatt simulate mission.toml -o soc.csv",
-                      "flightwatt simulate mission.toml --samples 2000 --json"};
+                      "flightwatt simulate mission.toml --samples 2000 --json",
+                      "flightwatt simulate mission.toml --require reserve=0.95"};
     stage.uses_threads = true;
     SimulateArguments arguments;
     auto& options = stage.options;
@@ -107,6 +114,7 @@ their final state of charge; the CSV stays that of the mission as it is stated.)
     options.add("schedule-out", arguments.schedule_file, cli::output_file("FILE"),
                 "write the mission with the schedule that was flown to FILE");
     add_sampling_options(options, arguments.sampling);
+    add_require_option(options, arguments.requirement, arguments.sampling);
     options.add("samples-csv", arguments.samples_file,
                 {.value = "FILE", .file = cli::FileRole::output, .needs = {"samples"}},
                 "write the state of charge over time that 5, 50 and 95 % of the drawn flights are below");

@@ -33,7 +33,7 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
             flights.push_back(std::move(flight));
         } catch (const NoResultError& error) {
             cli::add_diagnostic(call, {Severity::warning, "not in the air at the moment",
-                                       fmt::format("it is excluded: {}", error.what()), flight.samples.flight});
+                                       fmt::format("it is not used: {}", error.what()), flight.samples.flight});
         }
     }
     return flights;
@@ -75,7 +75,7 @@ int validate_flights(const cli::StageCall& call, const ValidateArguments& argume
 
 int flightwatt::stages::validate_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "validate", "FLIGHT.data|SERIES.csv|FOLDER...",
+        "validate", "LOG|SERIES.csv|FOLDER...",
         R"(Leaves one flight out, fits the others, and predicts the energy of each of its phases and of the whole
 from their durations alone; then compares with the integral of the power that was measured. Models:
   fourier         the Fourier series of this project

@@ -4,8 +4,10 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <regex>
 #include <sstream>
@@ -34,6 +36,18 @@ std::string range_text(const Option& option) {
     const auto high =
         has_max ? fmt::format("{} {:g}", option.below_max ? "less than" : "at most", option.max) : std::string();
     return low + (has_min && has_max ? " and " : "") + high + unit;
+}
+
+/// A time in seconds of "90", "90s", "30min" or "1.5h"; std::nullopt for other texts.
+std::optional<double> parse_time_s(std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, double>, 3> time_units{
+        {{"min", units::seconds_per_minute}, {"h", units::seconds_per_hour}, {"s", 1.0}}};
+    for (const auto& [unit, seconds] : time_units) {
+        if (!text.ends_with(unit)) continue;
+        const auto number = parse_number(text.substr(0, text.size() - unit.size()));
+        return number ? std::optional(*number * seconds) : std::nullopt;
+    }
+    return parse_number(text);
 }
 
 std::string integer_range_text(const Option& option) {
@@ -90,13 +104,15 @@ std::vector<std::string> texts_of(const po::variables_map& values, const Option&
 std::string default_text(const Option& option, double value) { return fmt::format("{:g}", value / option.scale); }
 
 double parse_number_option(const Option& option, const std::string& text) {
-    const auto number = parse_number(text);
+    const bool is_time = option.unit == "s" || option.unit.starts_with("s ");
+    const auto number = is_time ? parse_time_s(text) : parse_number(text);
     const bool fits = number && std::isfinite(*number) &&
                       (option.above_min ? *number > option.min : *number >= option.min) &&
                       (option.below_max ? *number < option.max : *number <= option.max);
     const auto range = range_text(option);
     const bool lacks_number = !number && !range.starts_with("a number");
-    if (!fits) refuse(option, text, (lacks_number ? "a number without a unit, " : "") + range);
+    const auto* kind = is_time ? "a time as 90s, 30min or 1.5h, " : "a number without a unit, ";
+    if (!fits) refuse(option, text, (lacks_number ? kind : "") + range);
     return *number;
 }
 
@@ -164,11 +180,14 @@ void Options::append(Option option, Assign assign) {
     options_.push_back(std::move(option));
 }
 
-std::string Options::help_text(bool all) const {
+std::string Options::help_text(bool all, std::size_t columns) const {
+    constexpr std::size_t narrowest = 40;
+    constexpr std::size_t widest = 120;
+    const auto width = static_cast<unsigned>(std::clamp(columns, narrowest, widest));
     std::ostringstream text;
     for (std::size_t i = 0; i < options_.size();) {
         const auto& title = options_[i].group;
-        po::options_description group(title);
+        po::options_description group(title, width, width / 2);
         bool is_empty = true;
         for (; i < options_.size() && options_[i].group == title; ++i) {
             if (options_[i].is_expert && !all) continue;

@@ -28,7 +28,7 @@ struct OptionDetails {
     double max = std::numeric_limits<double>::infinity();
     bool above_min = false;  ///< min itself is refused
     bool below_max = false;  ///< max itself is refused
-    std::string unit = {};   ///< of the number
+    std::string unit = {};   ///< of the number; of a time (s) min and h are read as well
     double scale = 1.0;      ///< a whole number is multiplied by this
     std::string hint = {};   ///< how to correct a number outside the range
     FileRole file = FileRole::none;
@@ -146,8 +146,8 @@ class Options {
     const std::vector<Option>& all() const { return options_; }
     const Option* find(const std::string& name) const;
 
-    /// --help's lists, of expert options too with `all`.
-    std::string help_text(bool all) const;
+    /// --help's lists in lines of so many characters, of expert options too with `all`.
+    std::string help_text(bool all, std::size_t columns = 80) const;
 
     /// A line an option with name, short name, kind, value and description, between tabs: for completion and man pages.
     std::string list_text() const;

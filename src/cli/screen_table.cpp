@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "record/record.h"
 
 #include <algorithm>
@@ -66,6 +67,58 @@ std::string readable_cell(const std::string& cell, std::string_view column) {
     return cell.find_first_of(".eE") == std::string::npos ? cell : fmt::format("{:.4g}", *number);
 }
 
+/// The table of these columns.
+TextTable selected(const TextTable& table, const std::vector<std::size_t>& columns) {
+    TextTable shown{{}, std::vector<std::vector<std::string>>(table.rows.size())};
+    for (const auto column : columns) {
+        shown.header.push_back(table.header[column]);
+        for (std::size_t i = 0; i < table.rows.size(); ++i) shown.rows[i].push_back(table.rows[i][column]);
+    }
+    return shown;
+}
+
+/// All columns in tables of the width, one below the other, each with the first column.
+std::string split_text(const TextTable& table, std::size_t width) {
+    constexpr std::size_t gap = 2;
+    std::string text;
+    std::vector<std::size_t> part{0};
+    auto used = width_of(table, 0);
+    for (std::size_t column = 1; column < table.header.size(); ++column) {
+        const auto needs = gap + width_of(table, column);
+        if (part.size() > 1 && used + needs > width) {
+            text += to_text(selected(table, part)) + "\n";
+            part = {0};
+            used = width_of(table, 0);
+        }
+        used += needs;
+        part.push_back(column);
+    }
+    return text + to_text(selected(table, part));
+}
+
+/// "duration" of "duration [s]" and "duration_s"; std::nullopt for other columns.
+std::optional<std::string> name_of_time(const std::string& column) {
+    constexpr std::string_view unit = " [s]";
+    if (column.ends_with(unit)) return column.substr(0, column.size() - unit.size());
+    if (column.ends_with("duration_s")) return column.substr(0, column.size() - 2);
+    return std::nullopt;
+}
+
+/// The table with durations as people state them, "28 min 32 s", where one has a minute.
+TextTable with_minutes(TextTable table) {
+    for (std::size_t column = 0; column < table.header.size(); ++column) {
+        const auto name = name_of_time(table.header[column]);
+        const auto seconds = [&](const auto& row) { return parse_number(row[column]).value_or(0.0); };
+        if (!name || std::ranges::none_of(table.rows,
+                                          [&](const auto& row) { return seconds(row) >= units::seconds_per_minute; }))
+            continue;
+        table.header[column] = *name;
+        for (auto& row : table.rows)
+            if (parse_number(row[column])) row[column] = duration_text(seconds(row));
+    }
+    return table;
+}
+
 }  // namespace
 
 Screen screen_of(const StageCall& call) { return {::isatty(STDOUT_FILENO) != 0, call.wide, terminal_columns(stdout)}; }
@@ -74,22 +127,26 @@ std::string screen_text(TextTable table, const Screen& screen, const ScreenTable
     if (!screen.is_terminal) return to_text(std::move(table));
     const auto rows = table.rows.size();
     if (options.max_rows > 0 && rows > options.max_rows) table.rows.resize(options.max_rows);
-    auto text = options.title.empty() ? "" : one_line(options.title) + "\n";
+    table = with_minutes(std::move(table));
+    auto first = options.first;
+    for (auto& column : first)
+        if (auto name = name_of_time(column); name && std::ranges::find(table.header, *name) != table.header.end())
+            column = *name;
+    auto text = options.title.empty() ? "" : wrapped(one_line(options.title), screen.columns) + "\n";
     if (screen.wide) {
         text += to_text(table);
+    } else if (first.empty() && !table.header.empty()) {
+        text += split_text(table, screen.columns);
     } else {
         for (auto& row : table.rows) std::ranges::transform(row, row.begin(), shortened);
-        TextTable shown{{}, std::vector<std::vector<std::string>>(table.rows.size())};
-        const auto columns = columns_that_fit(table, screen.columns, options.first);
-        for (const auto column : columns) {
-            shown.header.push_back(table.header[column]);
-            for (std::size_t i = 0; i < table.rows.size(); ++i) shown.rows[i].push_back(table.rows[i][column]);
-            table.header[column].clear();
-        }
+        const auto columns = columns_that_fit(table, screen.columns, first);
+        text += to_text(selected(table, columns));
+        for (const auto column : columns) table.header[column].clear();
         std::erase(table.header, "");
-        text += to_text(std::move(shown));
         if (!table.header.empty())
-            text += fmt::format("left out: {} (--wide shows all)\n", fmt::join(table.header, ", "));
+            text += wrapped(fmt::format("not shown: {} (--wide shows all)", fmt::join(table.header, ", ")),
+                            screen.columns) +
+                    "\n";
     }
     const auto dropped = rows - table.rows.size();
     return dropped == 0 ? text : text + fmt::format("{} rows more, which -o FILE or a pipe gives\n", dropped);

@@ -26,11 +26,12 @@ Screen screen_of(const StageCall& call);
 /// Title and important columns of a table.
 struct ScreenTable {
     std::string title;               ///< shown on a terminal
-    std::vector<std::string> first;  ///< important columns, the most important first
+    std::vector<std::string> first;  ///< important columns, the most important first; empty: all are needed
     std::size_t max_rows = 0;        ///< of longer tables the first rows are shown; 0: all
 };
 
-/// The table in the width of the screen: the important columns, long texts shortened, then the names of the others.
+/// The table in the width of the screen, durations in minutes: the important columns, long texts shortened, then the
+/// names of the others; where all columns are needed, as several tables with the first column in each.
 /// Without a terminal: to_text(table).
 std::string screen_text(TextTable table, const Screen& screen, const ScreenTable& options = {});
 

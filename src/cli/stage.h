@@ -18,7 +18,14 @@ namespace flightwatt::cli {
 
 using flightwatt::Json;
 
-enum ExitCode : int { ok = 0, internal_error = 1, usage_error = 2, input_rejected = 3, no_answer = 4 };
+enum ExitCode : int {
+    ok = 0,
+    internal_error = 1,
+    usage_error = 2,
+    input_rejected = 3,
+    no_answer = 4,
+    requirement_missed = 5
+};
 
 struct StageCall;
 

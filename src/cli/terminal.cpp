@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <string_view>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -25,6 +25,56 @@ std::size_t terminal_columns(std::FILE* stream) {
     constexpr std::size_t usual = 80;
     winsize size{};
     return ::ioctl(::fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
+}
+
+std::string wrapped(const std::string& text, std::size_t columns, std::string_view indentation) {
+    std::istringstream words(text);
+    std::string lines;
+    std::size_t used = 0;
+    for (std::string word; words >> word;) {
+        const auto width = character_count(word);
+        if (used > 0 && used + 1 + width > columns) {
+            lines += "\n";
+            lines += indentation;
+            used = indentation.size();
+        } else if (used > 0) {
+            lines += ' ';
+            ++used;
+        }
+        lines += word;
+        used += width;
+    }
+    return lines;
+}
+
+std::string fitted(const std::string& text, std::FILE* stream, std::size_t margin) {
+    if (::isatty(::fileno(stream)) == 0) return text;
+    const auto columns = std::max(terminal_columns(stream), 2 * margin) - margin;
+    std::istringstream lines(text);
+    std::string result;
+    std::string paragraph;
+    const auto end_paragraph = [&] {
+        if (!paragraph.empty()) result += wrapped(paragraph, columns, "") + "\n";
+        paragraph.clear();
+    };
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.empty() && line.front() != ' ') {
+            paragraph += (paragraph.empty() ? "" : " ") + line;
+            continue;
+        }
+        end_paragraph();
+        result += line + "\n";
+    }
+    end_paragraph();
+    if (!text.ends_with('\n') && !result.empty()) result.pop_back();
+    return result;
+}
+
+bool is_coloured(std::FILE* stream) {
+    const char* none = std::getenv("NO_COLOR");
+    const char* kind = std::getenv("TERM");
+    return (none == nullptr || *none == '\0') && kind != nullptr && std::string_view(kind) != "dumb" &&
+           ::isatty(::fileno(stream)) != 0;
 }
 
 bool standard_output_redraws() {

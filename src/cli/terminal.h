@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 /// Capabilities of the terminal, and progress on it.
@@ -14,6 +15,17 @@ namespace flightwatt::cli {
 
 /// The width of the terminal that `stream` is; 80 where it is not known.
 std::size_t terminal_columns(std::FILE* stream);
+
+/// The text in lines of at most `columns`, cut between words; all but the first begin with `indentation`. A longer word
+/// has a line of its own.
+std::string wrapped(const std::string& text, std::size_t columns, std::string_view indentation = "  ");
+
+/// The text with each paragraph wrapped to the terminal that `stream` is, without its first `margin` columns; elsewhere as
+/// it is. Lines that begin with a blank stay.
+std::string fitted(const std::string& text, std::FILE* stream, std::size_t margin = 0);
+
+/// Whether what is printed there may have colours: a terminal, TERM not "dumb", and NO_COLOR not set (no-color.org).
+bool is_coloured(std::FILE* stream);
 
 /// Whether the standard output is a terminal whose screen can be rewritten: TERM is not "dumb".
 bool standard_output_redraws();

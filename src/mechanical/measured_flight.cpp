@@ -62,7 +62,7 @@ bool has_any_phase(const MeasuredFlight& flight) {
 
 std::string to_string(const Exclusion& exclusion) {
     const auto what = exclusion.phase ? to_string(*exclusion.phase) : "it";
-    return fmt::format("{}: {} is excluded from the fit: {}", exclusion.flight, what, exclusion.reason);
+    return fmt::format("{}: {} is not used in the fit: {}", exclusion.flight, what, exclusion.reason);
 }
 
 std::string sortie_name(const std::string& flight, std::size_t sortie) {

@@ -94,7 +94,7 @@ void read_durations(const TomlTable& root, MissionSetup& mission) {
         total_s += mission.duration_s[phase];
     }
     if (given) given->refuse_unknown_keys();
-    note_minutes(mission);
+    if (!root.has("path")) note_minutes(mission);
     if (total_s == 0.0) throw InputError(root.where("duration_s"), "all phases take 0 s, expected a mission");
 }
 

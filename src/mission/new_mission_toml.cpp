@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -53,17 +54,45 @@ std::string if_so(bool condition, const char* text = "yes") { return condition ?
 
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 
-void add_aircraft(const mechanical::MechanicalModel& model, Values& values) {
-    for (const auto phase : all_phases)
-        values[std::string(to_string(phase)) + "_s"] = fmt::format("{:.0f}", model.phases[phase].duration_s);
+/// Whether the cruise's power follows from its airspeed.
+bool knows_airspeed(const mechanical::MechanicalModel& model) {
+    return motion_predicts_best(model) && model.physical->mean_airspeed_m_per_s > 0.0;
+}
+
+void add_aircraft(const NewMission& mission, Values& values) {
+    const auto& model = mission.model;
+    std::vector<std::string> durations;
+    for (const auto phase : all_phases) {
+        if (phase == Phase::cruise && mission.flown) continue;
+        const double model_s = std::round(model.phases[phase].duration_s);
+        const double duration_s = phase == Phase::cruise ? mission.cruise_s.value_or(model_s) : model_s;
+        durations.push_back(fmt::format("{} = {}", to_string(phase), duration_s));
+    }
+    values["durations"] = toml_inline_table(durations);
     // Stated where the physical model makes the cruise's power of it.
-    const bool is_physical = motion_predicts_best(model) && model.physical->mean_airspeed_m_per_s > 0.0;
-    values["physical"] = if_so(is_physical);
-    values["not_physical"] = if_so(!is_physical);
-    double airspeed_m_per_s = 13.0;  // of a small wing
-    if (is_physical)
-        airspeed_m_per_s = model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
-    values["airspeed"] = fmt::format("{:.1f}", airspeed_m_per_s);
+    values["physical"] = if_so(knows_airspeed(model) && !mission.flown);
+    values["not_physical"] = if_so(!knows_airspeed(model));
+    values["airspeed"] = fmt::format("{:.1f}", new_airspeed_m_per_s(model));
+    values["takeoff_mass"] = mission.takeoff_mass_kg ? fmt::format("{}", *mission.takeoff_mass_kg) : "";
+    values["payload"] = mission.payload_kg ? fmt::format("{}", *mission.payload_kg) : "";
+}
+
+void add_path(const NewMission& mission, Values& values) {
+    values["path"] = mission.flown ? fmt::format("{}", fmt::join(mission.flown->keys, "\n")) : "";
+    values["wind"] = mission.wind ? fmt::format("{}", mission.wind->speed_m_per_s) : "";
+    values["wind_from"] = mission.wind ? fmt::format("{}", mission.wind->from_deg) : "";
+    values["packs"] = mission.packs > 1 ? fmt::format("{}", mission.packs) : "";
+}
+
+/// The lines that are no comments, a blank line before each table.
+std::string without_comments(const std::string& text) {
+    std::string lines = "# `flightwatt new-mission --all-keys` explains the other keys (docs/missions.md).\n";
+    std::istringstream all(text);
+    for (std::string line; std::getline(all, line);) {
+        if (line.empty() || line.starts_with('#')) continue;
+        lines += (line.starts_with('[') ? "\n" : "") + line + "\n";
+    }
+    return lines;
 }
 
 /// As in the battery file; else estimated from the voltage of a full pack, or from the constant one, of LiPo cells.
@@ -122,7 +151,8 @@ void add_schedule(const NewMission& mission, Values& values) {
                   "# the values to choose from, instead of all that were profiled", values);
 }
 
-std::string component_text(std::string_view text, const NewComponent& component, Values values) {
+std::string component_text(std::string_view text, const NewComponent& component, bool states_parameters,
+                           Values values) {
     const auto& power = component.power;
     std::vector<std::string> names;
     names.reserve(power.parameters.size() + 1);
@@ -137,11 +167,18 @@ std::string component_text(std::string_view text, const NewComponent& component,
                                ? ""
                                : list_of({power.axes.front().front(), power.axes.front().back()});
     names.push_back("\"power_w\"");
+    values["no_parameters"] = if_so(!states_parameters, "#");
     values["columns"] = fmt::format("{}", fmt::join(names, ", "));
     return fill(text, values);
 }
 
 }  // namespace
+
+double new_airspeed_m_per_s(const mechanical::MechanicalModel& model) {
+    constexpr double small_wing_m_per_s = 13.0;
+    if (!knows_airspeed(model)) return small_wing_m_per_s;
+    return model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
+}
 
 std::string new_mission_toml(const NewMission& mission) {
     constexpr std::string_view each = "{{each component}}\n";
@@ -149,7 +186,8 @@ std::string new_mission_toml(const NewMission& mission) {
     Values values{{"name", toml_string(mission.name)},
                   {"mechanical", toml_string(mission.mechanical)},
                   {"battery", toml_string(mission.battery)}};
-    add_aircraft(mission.model, values);
+    add_aircraft(mission, values);
+    add_path(mission, values);
     add_battery(mission.pack, values);
     add_schedule(mission, values);
     const auto text = new_mission_template();
@@ -157,8 +195,10 @@ std::string new_mission_toml(const NewMission& mission) {
     const auto end = text.find(end_of_each);
     auto filled = fill(text.substr(0, start), values);
     for (const auto& component : mission.components)
-        filled += component_text(text.substr(start + each.size(), end - start - each.size()), component, values);
-    return filled + fill(text.substr(end + end_of_each.size()), values);
+        filled += component_text(text.substr(start + each.size(), end - start - each.size()), component,
+                                 mission.states_parameters, values);
+    filled += fill(text.substr(end + end_of_each.size()), values);
+    return mission.shows_all_keys ? filled : without_comments(filled);
 }
 
 }  // namespace flightwatt::mission

@@ -149,6 +149,21 @@ Interval share_of_new_flights_95(double share, const DrawnFlights& drawn) {
                              drawn.degrees_of_freedom);
 }
 
+std::string describe_briefly(const MonteCarloResult& flights) {
+    const auto& q = flights.final_soc_quantiles_percent;
+    const auto kept = [](double missed) { return units::percentage(1.0 - missed, 1.0); };
+    const auto& missed = flights.probability_below_reserve_95;
+    const auto reserve = fmt::format("the reserve of {:.6g} %", flights.reserve_soc_percent);
+    const auto share =
+        flights.variability_is_known
+            ? fmt::format("{:.4g} % keep {}, of new flights {:.4g} to {:.4g} %",
+                          kept(flights.probability_below_reserve), reserve, kept(missed.high), kept(missed.low))
+            : fmt::format("it is unknown how many keep {}, as nothing shows how their power differs", reserve);
+    return fmt::format(
+        "{}: of {} drawn flights {}; 90 of 100 land with {:.1f} to {:.1f} %; --notes: how flights differ",
+        flights.mission, flights.samples, share, q.front(), q.back());
+}
+
 std::string describe(const MonteCarloResult& flights) {
     const auto& q = flights.final_soc_quantiles_percent;
     const double cut_off = flights.probability_battery_failure - flights.probability_depleted;

@@ -47,7 +47,10 @@ DrawnFlights draw_flights(const MissionSetup& mission, const SamplingOptions& op
 /// their number and by the few flights that show how flights differ.
 Interval share_of_new_flights_95(double share, const DrawnFlights& drawn);
 
-/// Text for people.
+/// Text for people: how many keep the reserve, and with what charge 90 of 100 land.
+std::string describe_briefly(const MonteCarloResult& flights);
+
+/// The same with intervals, quantiles and the sources of the variability.
 std::string describe(const MonteCarloResult& flights);
 
 /// time_s,soc_p05_percent,soc_p50_percent,soc_p95_percent

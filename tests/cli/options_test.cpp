@@ -34,6 +34,7 @@ struct Values {
     Colour colour = Colour::phase;
     std::optional<std::chrono::sys_days> since;
     double expert = 1.0;
+    double cruise_s = 600.0;
 };
 
 /// Values and the options that are bound to them.
@@ -55,6 +56,7 @@ struct Declared {
         options.add_choice("colour", values.colour, {{"phase", Colour::phase}, {"power", Colour::power}},
                            {.value = "HOW"}, "a colour");
         options.add("since", values.since, {.value = "DATE"}, "a date");
+        options.add("cruise", values.cruise_s, {.value = "TIME", .min = 1.0, .unit = "s"}, "a time");
         options.begin_group("Details", true);
         options.add("expert", values.expert, {.value = "X"}, "for experts");
         options.add_rule([this] {
@@ -102,6 +104,13 @@ TEST(Options, SetTheVariablesToWhichTheyAreBound) {
     EXPECT_EQ(values.colour, Colour::power);
     EXPECT_EQ(values.since, std::chrono::sys_days(std::chrono::July / 5 / 2020));
     EXPECT_EQ(values.expert, 2.0);
+}
+
+TEST(Options, TakeTimesInSecondsMinutesAndHours) {
+    for (const auto* text : {"1800", "1800s", "30min", "0.5h"})
+        EXPECT_EQ(values_of({"--cruise", text}).cruise_s, 1800.0) << text;
+    for (const auto* text : {"30m", "min", "0.5hours", "30 min"})
+        EXPECT_THAT(refusal({"--cruise", text}), HasSubstr("90s, 30min or 1.5h")) << text;
 }
 
 TEST(Options, LeaveOtherVariablesAsTheyAre) {

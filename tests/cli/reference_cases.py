@@ -108,7 +108,7 @@ def questions(mission, samples):
         f"flightwatt simulate planned.toml --json --samples {samples} --seed 7",
         f"flightwatt plan {mission} --json --probability 0.9",
         f"flightwatt plan {mission} --longest-cruise --json",
-        f"flightwatt plan {mission} --largest-payload --json",
+        f"flightwatt plan {mission} --spare-power --json",
     ])
 
 

@@ -42,10 +42,29 @@ std::size_t characters_in(const std::string& line) {
 TEST(ScreenTable, HasTheImportantColumnsAndNamesTheOthers) {
     EXPECT_EQ(screen_text(energies(), narrow, {"two flights", {"flight", "energy_wh"}}),
               "two flights\n"
-              "flight  duration_s  energy_wh\n"
-              "first       1712.4      5.017\n"
-              "second        27.5      0.229\n"
-              "left out: remark, start_altitude_m (--wide shows all)\n");
+              "flight  duration      energy_wh\n"
+              "first   28 min 32 s      5.017\n"
+              "second  27.5 s           0.229\n"
+              "not shown: remark, start_altitude_m\n"
+              "  (--wide shows all)\n");
+}
+
+TEST(ScreenTable, IsSplitWhereAllColumnsAreNeeded) {
+    const TextTable table{{"coefficient", "take-off published", "take-off regenerated", "cruise published"},
+                          {{"a0", "29.97", "30.01", "27.22"}}};
+    EXPECT_EQ(screen_text(table, narrow),
+              "coefficient  take-off published\n"
+              "a0                        29.97\n"
+              "\n"
+              "coefficient  take-off regenerated\n"
+              "a0                          30.01\n"
+              "\n"
+              "coefficient  cruise published\n"
+              "a0                      27.22\n");
+}
+
+TEST(ScreenTable, KeepsSecondsBelowAMinute) {
+    EXPECT_EQ(screen_text({{"n", "duration_s"}, {{"1", "27.5"}}}, narrow), "n  duration_s\n1        27.5\n");
 }
 
 TEST(ScreenTable, ShortensLongTexts) {
@@ -60,7 +79,7 @@ TEST(ScreenTable, ShortensLongTexts) {
 
 TEST(ScreenTable, IsWholeWhereItIsWide) {
     const auto text = screen_text(energies(), {true, true, 20}, {"two flights", {}});
-    EXPECT_THAT(text, Not(HasSubstr("left out")));
+    EXPECT_THAT(text, Not(HasSubstr("not shown")));
     EXPECT_THAT(text, HasSubstr("was cut short by rain, landed early"));
     EXPECT_THAT(text, HasSubstr("17.1"));
 }
@@ -137,6 +156,21 @@ std::string with_results_in(std::string command, const std::filesystem::path& fo
     return at == std::string::npos ? command : command.insert(at + 4, folder.string() + "/");
 }
 
+TEST_F(TablesOfPrograms, ColourErrorsUnlessItIsNotWanted) {
+    const std::string command = "flightwatt simulate nothing.toml || true";
+    EXPECT_THAT(on_terminal(40, command, plain), HasSubstr("\x1b[31merror:\x1b[0m"));
+    EXPECT_THAT(on_terminal(40, command, std::string(plain) + " NO_COLOR=1"), Not(HasSubstr("\x1b")));
+    EXPECT_THAT(on_terminal(40, command, "TERM=dumb"), Not(HasSubstr("\x1b")));
+}
+
+TEST_F(TablesOfPrograms, WrapHelpBetweenWords) {
+    for (const auto* command : {"flightwatt", "flightwatt batch --help-all", "flightwatt plan --help"})
+        for (const auto& line : lines_of(on_terminal(60, command, plain)))
+            if (!line.starts_with("  flightwatt ") && !line.starts_with("usage:")) {
+                EXPECT_LE(characters_in(line), 60U) << command << "\n" << line;
+            }
+}
+
 TEST_F(TablesOfPrograms, FitTheTerminal) {
     const auto folder = test::scratch_dir();
     for (const std::size_t columns : {80U, 130U}) {
@@ -159,7 +193,7 @@ TEST_F(TablesOfPrograms, ShowAllWithWide) {
     for (const auto& command : commands()) {
         const auto text = on_terminal(80, with_results_in(command, folder) + " --wide 2>/dev/null", plain);
         ASSERT_NE(text, "") << command;
-        EXPECT_THAT(text, Not(HasSubstr("left out:"))) << command;
+        EXPECT_THAT(text, Not(HasSubstr("not shown:"))) << command;
     }
     EXPECT_THAT(on_terminal(80, "flightwatt segment logs/opterra_synthetic_01.data --wide", plain),
                 HasSubstr("throttle"));

@@ -125,6 +125,23 @@ TEST(ProgressBar, GoesOnAfterItWasHidden) {
     EXPECT_THAT(terminal.printed(), HasSubstr("4/8"));
 }
 
+TEST(Terminal, WrapsBetweenWords) {
+    EXPECT_EQ(wrapped("warning: one two three", 14), "warning: one\n  two three");
+    EXPECT_EQ(wrapped("one two", 7), "one two");
+    EXPECT_EQ(wrapped("one two", 5, ""), "one\ntwo");
+    EXPECT_EQ(wrapped("a a-word-that-is-too-long b", 10), "a\n  a-word-that-is-too-long\n  b");
+    EXPECT_EQ(wrapped("\u00e4\u00e4\u00e4 \u00e4\u00e4\u00e4", 7), "\u00e4\u00e4\u00e4 \u00e4\u00e4\u00e4")
+        << "columns are characters";
+}
+
+TEST(Terminal, LeavesTextForFilesAsItIs) {
+    const auto text = std::string(60, 'a') + " " + std::string(60, 'b') + "\nc\n";
+    auto* file = std::tmpfile();
+    EXPECT_EQ(fitted(text, file), text);
+    EXPECT_FALSE(is_coloured(file));
+    std::fclose(file);
+}
+
 TEST(ProgressBar, SaysNothingWhereTheStandardErrorIsNoTerminal) {
     if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "the standard error is a terminal here";
     testing::internal::CaptureStderr();

@@ -44,7 +44,7 @@ class NewMissions : public testing::Test {
     }
 
     /// The mission, with the schedule planned or given.
-    std::string text_for(bool is_planned) const {
+    std::string text_for(bool is_planned, bool shows_all_keys = true) const {
         mission::NewMission fresh;
         fresh.name = "survey";
         fresh.mechanical = model;
@@ -54,6 +54,7 @@ class NewMissions : public testing::Test {
         fresh.components.push_back(
             {"detection", "tx2-detection.csv", compute::read_power_profile(folder / "tx2-detection.csv")});
         fresh.is_planned = is_planned;
+        fresh.shows_all_keys = shows_all_keys;
         return new_mission_toml(fresh);
     }
 
@@ -122,6 +123,15 @@ std::string with_block(const std::vector<std::string>& lines, const std::pair<st
 TEST_F(NewMissions, AreReadAsTheyAre) {
     EXPECT_EQ(why_refused(text_for(false), false), "");
     EXPECT_EQ(why_refused(text_for(true), true), "");
+}
+
+TEST_F(NewMissions, AreShortWithoutAllKeys) {
+    for (const bool is_planned : {false, true}) {
+        const auto text = text_for(is_planned, false);
+        EXPECT_EQ(why_refused(text, is_planned), "");
+        EXPECT_LT(text.find("--all-keys"), text.find('\n')) << "the first line names the option";
+        EXPECT_LE(lines_of(text).size(), 17U) << text;
+    }
 }
 
 TEST_F(NewMissions, HoldEveryKeyOfTheDocumentation) {

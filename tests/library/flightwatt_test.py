@@ -40,8 +40,8 @@ class Summaries(unittest.TestCase):
         self.assertEqual(len(model["flights"]), 2)
 
     def test_options_become_those_of_the_command_line(self):
-        line = fw.command("new_mission", 1, plan=True, quiet=False, name=None, profile=["a.csv", "b.csv"])
-        self.assertEqual(line[1:], ["new-mission", "1", "--plan", "--profile", "a.csv", "--profile", "b.csv"])
+        line = fw.command("new_mission", 1, planned=True, quiet=False, name=None, profile=["a.csv", "b.csv"])
+        self.assertEqual(line[1:], ["new-mission", "1", "--planned", "--profile", "a.csv", "--profile", "b.csv"])
 
 
 class Tables(unittest.TestCase):

@@ -23,7 +23,7 @@ std::vector<std::string> names_of(const batch::AircraftGroup& group, FlownAircra
 
 void warn_of_uncertain(const StageCall& call, const batch::AircraftGroup& group, FlownAircraft flights) {
     const auto text =
-        fmt::format("left out: may be of {}: nothing in the log contradicts either", fmt::join(group.may_be, " or "));
+        fmt::format("not used: may be of {}: nothing in the log contradicts either", fmt::join(group.may_be, " or "));
     for (const auto& name : names_of(group, flights))
         add_diagnostic(call, {Severity::warning, "of an uncertain aircraft", text, name});
 }
@@ -56,7 +56,7 @@ void note_other_flights(const StageCall& call, AircraftGroups groups, const batc
         else
             std::ranges::move(names_of(group, flights), std::back_inserter(others));
     }
-    if (!others.empty()) note(call, fmt::format("left out, as of other aircraft: {}", short_list(others)));
+    if (!others.empty()) note(call, fmt::format("not used, as of other aircraft: {}", short_list(others)));
 }
 
 ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::string>& aircraft,

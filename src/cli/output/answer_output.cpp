@@ -4,7 +4,7 @@
 #include "cli/output/failsafe_output.h"
 #include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
-#include "cli/screen/diagnostic_lines.h"
+#include "cli/terminal.h"
 
 #include <cmath>
 #include <set>
@@ -192,8 +192,8 @@ std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
     const auto add = [&](const std::string& label, const std::string& line) {
         if (line.empty()) return;
         const bool is_repeated = !given.insert(line).second;  // a reason why nothing is known
-        auto lines = wrapped(is_repeated ? "unknown, for the same reason" : line, columns - label_width);
-        boost::algorithm::replace_all(lines, "\n  ", "\n" + std::string(label_width, ' '));
+        auto lines = wrapped(is_repeated ? "unknown, for the same reason" : line, columns - label_width, "");
+        boost::algorithm::replace_all(lines, "\n", "\n" + std::string(label_width, ' '));
         text += fmt::format("{:<{}}{}\n", label, label_width, lines);
     };
     if (!answer.no_answer.empty()) {

@@ -24,11 +24,11 @@ namespace {
 Diagnostic rejection_of(const batch::FlightRecord& record) {
     const auto reason = reason_without_log(record);
     if (record.is_of_other_aircraft)
-        return {Severity::note, "of another aircraft", "left out: " + reason, record.flight};
+        return {Severity::note, "of another aircraft", "not used: " + reason, record.flight};
     if (!record.recordings.empty()) return {Severity::note, "recordings without a flight", reason, record.flight};
     const auto place = reason.starts_with(record.log) ? reason.find(": ") : std::string::npos;  // with a line
     const auto kind = kind_of_reason(place == std::string::npos ? reason : reason.substr(place + 2));
-    return {Severity::error, "rejected: " + kind, "rejected: " + record.error, record.flight};
+    return {Severity::error, "not used: " + kind, "not used: " + record.error, record.flight};
 }
 
 std::vector<batch::LogFile> chosen_logs(const StageCall& call, const FlightFilter& filter,
@@ -155,8 +155,8 @@ std::optional<FittedBatch> fit_folder(const StageCall& call, const BatchArgument
     const auto& flown = listed.flown;
     const auto totals = totals_of(flights);
     if (totals.accepted == 0) {
-        throw InputError(
-            {}, fmt::format("all {} logs were rejected or left out, so there is nothing to fit", flights.size()));
+        throw InputError({},
+                         fmt::format("none of the {} logs can be used, so there is nothing to fit", flights.size()));
     }
     if (totals.with_power == 0) {
         warn(call, "no flight has measured power: nothing was fitted, and there is no model");

@@ -133,7 +133,10 @@ std::string table_text(const TextTable& table, const std::filesystem::path& file
 void warn_of_model(const StageCall& call, const mechanical::MechanicalModel& model) {
     for (const auto& warning : model_warnings(model)) warn(call, warning);
     append(*call.diagnostics, Severity::note, "fit of the curves", "", fit_notes(model));
-    if (model.validation) note(call, describe(*model.validation, motion_predicts_best(model)));
+    if (!model.validation) return;
+    if (call.notes) return note(call, describe(*model.validation, motion_predicts_best(model)));
+    for (const auto& score : model.validation->scores)
+        if (score.model == model.validation->default_model) note(call, mission::describe(score));
 }
 
 Fields<FitOutput> record_fields(const FitOutput*) {

@@ -68,14 +68,14 @@ std::vector<SeriesFile> series_of_batch(const StageCall& call, const std::filesy
                                                        : left_out;
                    !why.empty() && !options.excluded.contains(record.flight)) {
             if (call.notes)  // the batch has shown it
-                add_diagnostic(call, {Severity::note, "left out by the batch", "is left out: " + why, record.flight});
+                add_diagnostic(call, {Severity::note, "not used by the batch", "is not used: " + why, record.flight});
         } else {
             files.push_back({record.log, (out / "flights" / (record.flight + batch::series_suffix)).string()});
         }
     }
     if (others > 0)
         note(call,
-             fmt::format("{}: left out, as of other aircraft than its model's: {} of its flights; --aircraft selects "
+             fmt::format("{}: not used, as of other aircraft than its model's: {} of its flights; --aircraft selects "
                          "them",
                          out.string(), others));
     return files;
@@ -102,7 +102,7 @@ void add_logs_of_folder(const StageCall& call, const std::string& folder, const 
             skip_input(call, log.path, InputError({log.path}, log.problem));
         else if (!log.why_not_fitted.empty() && !options.keep.contains(log.flight))
             add_diagnostic(call,
-                           {Severity::note, "not to be fitted", "is left out: " + log.why_not_fitted, log.flight});
+                           {Severity::note, "not to be fitted", "is not used: " + log.why_not_fitted, log.flight});
         else
             files.push_back(log.path);
     }
@@ -133,7 +133,7 @@ std::vector<bool> filter_flights(const StageCall& call, const FlightFilter& filt
     if (left_out == 0) return chosen;
     if (left_out == std::ssize(flights))
         throw InputError({}, fmt::format("no flight is left of {}: {}", left_out, first), "see --since and --until");
-    note(call, fmt::format("{} of {} flights are left out, the first: {}", left_out, flights.size(), first));
+    note(call, fmt::format("{} of {} flights are not used, the first: {}", left_out, flights.size(), first));
     return chosen;
 }
 

@@ -65,7 +65,7 @@ std::vector<std::size_t> without_copies(const StageCall& call, const std::vector
         } else {
             const auto reason = batch::duplicate_reason(flights[original->second].flown.flight);
             add_diagnostic(call,
-                           {Severity::warning, "recorded twice", "it is excluded: " + reason, flights[i].flown.flight});
+                           {Severity::warning, "recorded twice", "it is not used: " + reason, flights[i].flown.flight});
         }
     }
     return numbers;
@@ -115,7 +115,7 @@ void add_flight_options(Options& options, flight::LoadOptions& load, const std::
                 "this recording of a file alone, counted from 1, where its clock restarts");
     options.add("exclude", load.excluded, {.value = "FLIGHT"}, "do not use this flight");
     options.add("keep", load.keep, {.value = "FLIGHT"},
-                "use this flight though it would be excluded (power faults, not-fitted.txt)");
+                "use this flight though it would not be used (power faults, not-fitted.txt)");
     options.add(
         "messages", load.messages, input_file("FILE"),
         "definitions for logs without a .log, above all binary ones: a messages.xml, or the .log of the same build");
@@ -165,13 +165,13 @@ void add_diagnostics(const StageCall& call, const std::string& file, const fligh
 
 void add_other_aircraft(const StageCall& call, const std::string& flight, const flight::OtherAircraftError& error) {
     add_diagnostic(call, {Severity::note, "of another aircraft",
-                          fmt::format("is left out: {}; {}", error.what(), error.hint()), flight});
+                          fmt::format("is not used: {}; {}", error.what(), error.hint()), flight});
 }
 
 Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion) {
     const auto& [flight, phase, reason] = exclusion;
     return {Severity::warning, phase ? "phases not used" : "not used: " + kind_of_reason(reason),
-            fmt::format("{} is excluded from the fit: {}", phase ? to_string(*phase) : "it", reason), flight};
+            fmt::format("{} is not used in the fit: {}", phase ? to_string(*phase) : "it", reason), flight};
 }
 
 void leave_out(const StageCall& call, const FlightArguments& arguments, const std::string& file,

@@ -4,6 +4,7 @@
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -240,6 +241,19 @@ void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) 
         if (auto text = negative_power_warning(component.profile); !text.empty()) warnings.push_back(std::move(text));
     std::ranges::copy(mission.notes, std::back_inserter(warnings));
     for (const auto& warning : warnings) warn(call, fmt::format("{}: {}", mission.name, warning));
+}
+
+mission::MissionVariant MissionNames::made_unique(const StageCall& call, mission::MissionVariant mission) {
+    auto& setup = std::visit(
+        [](auto& kind) -> auto& { return kind.setup; }, mission);
+    const auto stated = setup.name;
+    const auto file = std::filesystem::path(setup.file).stem().string();
+    for (int use = 1; !used_.insert(setup.name).second; ++use)
+        setup.name = use == 1 ? fmt::format("{} ({})", stated, file) : fmt::format("{} ({} {})", stated, file, use);
+    if (setup.name != stated)
+        note(call, fmt::format("{}: another mission is named '{}' too; this one is shown as '{}'", setup.file, stated,
+                               setup.name));
+    return mission;
 }
 
 void note_power_model(const StageCall& call, const mission::MissionSetup& mission) {

@@ -11,6 +11,8 @@
 #include "mission/simulation.h"
 
 #include <cstddef>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace flightwatt::mechanical {
@@ -30,6 +32,16 @@ namespace flightwatt::cli {
 
 /// Warns of implausible inputs: negative power of the model or of a profile, a battery of another unit.
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission);
+
+/// The names of the missions of one result.
+class MissionNames {
+  public:
+    /// The mission, under a name of its own: with that of its file behind a name that another one has, with a note.
+    mission::MissionVariant made_unique(const StageCall& call, mission::MissionVariant mission);
+
+  private:
+    std::set<std::string> used_;
+};
 
 /// Names the power model and its error, where its file has one.
 void note_power_model(const StageCall& call, const mission::MissionSetup& mission);

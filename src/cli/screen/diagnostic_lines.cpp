@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <iterator>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -78,27 +77,6 @@ std::string notes_line(const Diagnostics& diagnostics) {
                         (logs > 1 ? fmt::format(" ({} logs)", logs) : ""));
     }
     return kinds.empty() ? "" : fmt::format("notes: {}; --notes lists them", fmt::join(kinds, ", "));
-}
-
-std::string wrapped(const std::string& text, std::size_t columns) {
-    constexpr std::string_view indentation = "  ";
-    std::istringstream words(text);
-    std::string lines;
-    std::size_t used = 0;
-    for (std::string word; words >> word;) {
-        const auto width = character_count(word);
-        if (used > 0 && used + 1 + width > columns) {
-            lines += "\n";
-            lines += indentation;
-            used = indentation.size();
-        } else if (used > 0) {
-            lines += ' ';
-            ++used;
-        }
-        lines += word;
-        used += width;
-    }
-    return lines;
 }
 
 }  // namespace flightwatt::cli

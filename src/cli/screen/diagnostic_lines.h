@@ -2,7 +2,6 @@
 
 #include "base/diagnostic.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,5 @@ std::vector<std::string> diagnostic_lines(const Diagnostics& diagnostics, bool w
 
 /// "notes: cut at power-off (5 logs), no .log (2 logs); --notes lists them"; empty without notes.
 std::string notes_line(const Diagnostics& diagnostics);
-
-/// The text in lines of at most `columns`, cut between words; all but the first are indented. A longer word has a line
-/// of its own.
-std::string wrapped(const std::string& text, std::size_t columns);
 
 }  // namespace flightwatt::cli

@@ -177,21 +177,17 @@ std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefau
     return std::move(entries);
 }
 
-void refuse_what_the_path_decides(const TomlTable& root) {
-    const auto refuse = [&](const Location& where, const std::string& message, const std::string& hint) {
-        throw InputError(where, message, hint);
-    };
+/// Notes the keys that the path replaces.
+void apply_precedence_of_path(const TomlTable& root, MissionSetup& mission) {
     if (const auto durations = root.optional_table("duration_s"); durations && durations->has("cruise"))
-        refuse(durations->where("cruise"), "the duration of the cruise follows from [path]",
-               "leave it out, or the path");
+        mission.notes.emplace_back("duration_s.cruise is not used: the duration of the cruise follows from [path]");
     if (root.has("airspeed_m_per_s"))
-        refuse(root.where("airspeed_m_per_s"), "airspeed_m_per_s and [path] both define the cruise",
-               "leave it out: [path] has its own airspeed_m_per_s, and [wind] belongs to it");
+        mission.notes.emplace_back("airspeed_m_per_s is not used: the cruise has that of [path]");
     const auto uncertainty = root.optional_table("uncertainty");
     if (!uncertainty) return;
     if (const auto durations = uncertainty->optional_table("duration_sd_s"); durations && durations->has("cruise"))
-        refuse(durations->where("cruise"), "the duration of the cruise follows from [path] and [wind]",
-               "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
+        throw InputError(durations->where("cruise"), "the duration of the cruise follows from [path] and [wind]",
+                         "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
 }
 
 /// The physical model of the mission.
@@ -284,7 +280,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
         return;
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
-    refuse_what_the_path_decides(mission_table);
+    apply_precedence_of_path(mission_table, mission);
     path::PlannedPath plan;
     plan.path = read_path(*table, reading, mission_table.optional_table("packs"), mission);
     plan.wind = read_wind(mission_table);

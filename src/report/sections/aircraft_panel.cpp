@@ -168,7 +168,7 @@ std::string flight_notes_html(Flights flights) {
         notes.resize(max_shown);
         notes.push_back(fmt::format("<a href=\"#flights\">Warnings on {}</a>", plural(more, "more flight")));
     }
-    if (rejected > 0) notes.push_back(fmt::format("<a href=\"#excluded\">{}</a> rejected", plural(rejected, "log")));
+    if (rejected > 0) notes.push_back(fmt::format("<a href=\"#excluded\">{}</a> not used", plural(rejected, "log")));
     std::string html;
     for (const auto& note : notes) html += fmt::format("<p class=\"note\">{}</p>\n", note);
     return html;

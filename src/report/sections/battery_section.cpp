@@ -23,9 +23,9 @@ std::string reason_of(const InputError& error, const std::string& flight) {
 
 void add_record(ReportBattery& battery, const ReportFlight& flight) {
     const auto exclude = [&](const std::string& reason) {
-        battery.exclusions.push_back({flight.name, "from the battery", reason});
+        battery.exclusions.push_back({flight.name, "for the battery", reason});
     };
-    if (!flight.rejected.empty()) return exclude("rejected: " + flight.rejected);
+    if (!flight.rejected.empty()) return exclude("no usable log: " + flight.rejected);
     if (!flight.unusable_power.empty()) return exclude(flight.unusable_power);
     try {
         auto found = battery::discharge_records(flight.data);

@@ -18,7 +18,7 @@ TextTable exclusions_table(std::span<const Exclusion> exclusions) {
         });
         (same == groups.end() ? groups.emplace_back() : *same).push_back(&exclusion);
     }
-    TextTable table{{"flights", "number", "excluded", "reason"}, {}};
+    TextTable table{{"flights", "number", "not used", "reason"}, {}};
     for (const auto& group : groups) {
         std::vector<std::string> names;
         names.reserve(group.size());

@@ -69,15 +69,15 @@ void add_excluded(Section& section, std::span<const ReportFlight> flights) {
         // No folder of this machine: the page is passed on.
         const auto folder = std::filesystem::path(flight.log).parent_path().string() + "/";
         const auto reason = boost::algorithm::replace_all_copy(flight.rejected, folder, "");
-        if (!reason.empty()) exclusions.push_back({flight.name, "rejected", reason});
+        if (!reason.empty()) exclusions.push_back({flight.name, "at all", reason});
         const auto name = flight.name + ": ";
         for (const auto& text : flight.exclusions)
             exclusions.push_back(
-                {flight.name, "from the model", text.starts_with(name) ? text.substr(name.size()) : text});
+                {flight.name, "for the model", text.starts_with(name) ? text.substr(name.size()) : text});
     }
     if (exclusions.empty()) return;
-    section.html += "<h3 id=\"excluded\">Excluded</h3>\n";
-    add_table(section, {exclusions_table(exclusions), "Excluded flights and phases", "tab:excluded"});
+    section.html += "<h3 id=\"excluded\">Not used</h3>\n";
+    add_table(section, {exclusions_table(exclusions), "Flights and phases that are not used", "tab:excluded"});
 }
 
 /// Edges of a flight's phases with their evidence.
@@ -181,7 +181,7 @@ Section flights_section(const BatchContent& batch, const Progress& progress) {
     section.html += paragraph(
         fmt::format("{} logs{}. Mean power of each phase; distance over ground, height above the ground at lift-off. "
                     "Closure: energy less that of the autopilot's counter.",
-                    flights.size(), rejected > 0 ? fmt::format(", {} of them rejected", rejected) : ""),
+                    flights.size(), rejected > 0 ? fmt::format(", {} of them not used", rejected) : ""),
         "soft");
     const auto ids = flight_ids(flights);
     add_flights_table(section, flights, ids);

@@ -139,7 +139,7 @@ TEST_F(FlightOptions, KnowAircraftWithoutIdsByTheirPacks) {
     }
     const auto one = run("fit --order 0 copter.csv wing.csv --aircraft copter");
     EXPECT_EQ(one.code, ok) << one.err;
-    EXPECT_THAT(one.err, HasSubstr("left out, as of other aircraft: wing"));
+    EXPECT_THAT(one.err, HasSubstr("not used, as of other aircraft: wing"));
     EXPECT_EQ(one.out, run("fit --order 0 copter.csv").out);
     EXPECT_EQ(run("fit --order 0 copter.csv wing.csv --mix-aircraft").code, ok);
     const auto none = run("fit --order 0 copter.csv wing.csv --aircraft boat");

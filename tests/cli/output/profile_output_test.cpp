@@ -45,11 +45,11 @@ TEST(ProfileText, FitsTheScreen) {
     narrow.is_terminal = true;
     narrow.columns = 44;
     const auto text = profile_text({&measured, false}, narrow);
-    EXPECT_THAT(text, HasSubstr("left out: "));
+    EXPECT_THAT(text, HasSubstr("not shown: "));
     EXPECT_THAT(text, HasSubstr("fps"));
     EXPECT_THAT(text, HasSubstr("6.0000"));
     narrow.wide = true;
-    EXPECT_THAT(profile_text({&measured, false}, narrow), Not(HasSubstr("left out: ")));
+    EXPECT_THAT(profile_text({&measured, false}, narrow), Not(HasSubstr("not shown: ")));
 }
 
 TEST(ProfileText, SaysThatNothingCouldBeMeasured) {

@@ -60,13 +60,5 @@ TEST(DiagnosticLines, NameTheKindsOfNotesInOne) {
     EXPECT_THAT(diagnostic_lines(in_flights(2, note, "cut at power-off"), false), IsEmpty());
 }
 
-TEST(DiagnosticLines, AreWrappedBetweenWords) {
-    EXPECT_EQ(wrapped("warning: one two three", 14), "warning: one\n  two three");
-    EXPECT_EQ(wrapped("one two", 7), "one two");
-    EXPECT_EQ(wrapped("a a-word-that-is-too-long b", 10), "a\n  a-word-that-is-too-long\n  b");
-    EXPECT_EQ(wrapped("\u00e4\u00e4\u00e4 \u00e4\u00e4\u00e4", 7), "\u00e4\u00e4\u00e4 \u00e4\u00e4\u00e4")
-        << "columns are characters";
-}
-
 }  // namespace
 }  // namespace flightwatt::cli

@@ -52,7 +52,7 @@ TEST(SummarySection, WarnsOfFlightsAndOfWhatIsMissing) {
     const std::vector<ReportFlight> flights{flight, rejected};
     const auto html = summary_section(answers, flights).html;
     EXPECT_THAT(html, HasSubstr("2 warnings on 1 January 2020, 10:00</a>: a gap (and 1 more)"));
-    EXPECT_THAT(html, HasSubstr("1 log</a> rejected"));
+    EXPECT_THAT(html, HasSubstr("1 log</a> not used"));
     EXPECT_THAT(html, HasSubstr("<a href=\"#notes\">2 notes</a>"));
     EXPECT_THAT(html, Not(HasSubstr("<article"))) << "no missions";
     const auto notes = notes_section(answers);

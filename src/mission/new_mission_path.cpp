@@ -1,0 +1,100 @@
+#include "mission/new_mission_path.h"
+
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "path/area.h"
+#include "path/plan_blocks.h"
+#include "path/waypoint_files.h"
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double bank_deg = 30.0;  // of turns that a plan leaves open
+
+/// In whole metres.
+double turn_radius_m(double airspeed_m_per_s) {
+    const double pull_m_per_s2 = units::standard_gravity_m_per_s2 * std::tan(bank_deg / units::degree_per_rad);
+    return std::ceil(airspeed_m_per_s * airspeed_m_per_s / pull_m_per_s2);
+}
+
+bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+bool is_area(std::string_view text) {
+    return path::plan_format(text) == path::PlanFormat::flight_plan
+               ? !has(text, "<flight_plan")
+               : has(text, "\"Polygon\"") && !has(text, "\"fileType\"");
+}
+
+/// The course of the lines with the fewest turns, the first of equals.
+double best_heading_deg(std::string_view text, const std::string& file, double spacing_m) {
+    constexpr double step_deg = 5.0;
+    constexpr double half_turn_deg = 180.0;
+    std::optional<std::size_t> fewest;
+    double best_deg = 0.0;
+    for (double heading_deg = 0.0; heading_deg < half_turn_deg; heading_deg += step_deg) {
+        const auto count = path::parse_area(text, file, spacing_m, heading_deg).entries.size();
+        if (fewest && count >= *fewest) continue;
+        fewest = count;
+        best_deg = heading_deg;
+    }
+    return best_deg;
+}
+
+NewPath path_of_area(std::string_view text, const std::string& file, const std::string& name, double airspeed_m_per_s) {
+    const double spacing_m = 2.0 * turn_radius_m(airspeed_m_per_s);
+    const double heading_deg = best_heading_deg(text, file, spacing_m);
+    return {{fmt::format("area = {}", toml_string(name)), fmt::format("spacing_m = {}", spacing_m),
+             fmt::format("heading_deg = {}", heading_deg)},
+            {fmt::format("spacing_m = {}, for turns with a bank of {} degrees", spacing_m, bank_deg),
+             fmt::format("heading_deg = {}, for the fewest turns", heading_deg)}};
+}
+
+/// The only block that is flown. Throws UsageError for several.
+std::vector<std::string> only_block(std::string_view text, const std::string& file, double airspeed_m_per_s) {
+    std::vector<std::string> flown;
+    for (const auto& block : path::parse_plan(text, file, {turn_radius_m(airspeed_m_per_s), airspeed_m_per_s}))
+        if (!block.flown.empty()) flown.push_back(block.name);
+    if (flown.size() == 1) return flown;
+    throw UsageError(
+        fmt::format("{} has several blocks: name those of the mission, in the order of the flight, each "
+                    "with --block NAME. Those with a path: {}",
+                    file, short_list(flown)));
+}
+
+}  // namespace
+
+NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
+                     double airspeed_m_per_s) {
+    const auto text = read_file(file);
+    if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s);
+    const bool has_blocks = path::plan_format(text) == path::PlanFormat::flight_plan;
+    if (has_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
+    const auto read = [&](std::optional<double> radius_m) {
+        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s};
+        if (has_blocks)
+            path::parse_plan_blocks(text, file.string(), blocks, settings);
+        else
+            path::read_waypoints(file, settings);
+    };
+    NewPath path{{fmt::format("{} = {}", has_blocks ? "flight_plan" : "waypoints", toml_string(name))}, {}};
+    if (has_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
+    try {
+        read(std::nullopt);
+    } catch (const InputError&) {  // it may leave a radius to the autopilot
+        const double radius_m = turn_radius_m(airspeed_m_per_s);
+        read(radius_m);
+        path.keys.push_back(fmt::format("radius_m = {}", radius_m));
+        path.chosen.push_back(fmt::format("radius_m = {}, for circles with a bank of {} degrees", radius_m, bank_deg));
+    }
+    return path;
+}
+
+}  // namespace flightwatt::mission
