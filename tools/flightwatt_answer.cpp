@@ -194,9 +194,11 @@ cli::AircraftAnswer answer_aircraft(const cli::StageCall& call, const AnswerArgu
     return answer;
 }
 
-/// The aircraft to answer for, the one with the most flights unless each is asked for.
+/// The aircraft to answer for: the one that is named, each, or the one with the most flights.
 std::vector<batch::AircraftGroup> chosen_groups(const cli::StageCall& call, const AnswerArguments& arguments,
-                                                const cli::ChosenAircraft& flown) {
+                                                const cli::ChosenAircraft& flown,
+                                                const std::optional<std::string>& named) {
+    if (named) return {find_aircraft(*named, flown.groups, flown.flights)};
     auto groups = cli::certain_aircraft(call, flown.groups, flown.flights);
     if (arguments.batch.flights.each || groups.size() < 2) return groups;
     const auto most = std::ranges::max_element(groups, {}, [](const auto& group) { return group.flights.size(); });
@@ -208,20 +210,23 @@ std::vector<batch::AircraftGroup> chosen_groups(const cli::StageCall& call, cons
     return {*most};
 }
 
-std::vector<cli::AircraftAnswer> answer_all(const cli::StageCall& call, const AnswerArguments& arguments,
-                                            batch::BatchFlights flights, const batch::BatchOptions& options) {
+/// Answers for the chosen aircraft; where there are several, each has a folder of its own.
+std::vector<cli::AircraftAnswer> answer_all(const cli::StageCall& call, AnswerArguments arguments,
+                                            batch::BatchFlights flights, batch::BatchOptions options) {
+    const auto named = std::exchange(arguments.batch.flights.load.aircraft, std::nullopt);
+    options.load.aircraft.reset();
     auto listed = list_flights(call, flights, options);
     for (const auto& flight : flights)
         if (flight.selection.flights.empty()) add_diagnostics(call, flight);
     const auto& groups = listed.flown.groups;
-    if (groups.size() < 2 || options.load.aircraft || arguments.batch.flights.mix_aircraft) {
+    if (groups.size() < 2 || arguments.batch.flights.mix_aircraft) {
+        if (named && !groups.empty()) find_aircraft(*named, groups, listed.flown.flights);
         const auto name = groups.empty() ? flights.front().record.flight : groups.front().selector;
-        return {answer_aircraft(
-            call, arguments, {options.load.aircraft.value_or(name), options, std::move(flights), std::move(listed)})};
+        return {answer_aircraft(call, arguments, {name, options, std::move(flights), std::move(listed)})};
     }
     remove_model(call, options.out);
     std::vector<cli::AircraftAnswer> answers;
-    for (const auto& group : chosen_groups(call, arguments, listed.flown)) {
+    for (const auto& group : chosen_groups(call, arguments, listed.flown, named)) {
         AircraftFlights of{group.selector, options, {}, {}};
         of.flights = separate_aircraft(group, listed.flown, of.options);
         of.listed = list_flights(call, of.flights, of.options);
