@@ -136,9 +136,10 @@ std::string command_for(const std::string& file) {
 int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
         cli::print(
-            "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-            "usage: flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
-            start_text() + stage_list());
+            cli::fitted("flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
+                        "usage: flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
+                            start_text() + stage_list(),
+                        stdout));
     } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
     } else if (word == "--version" || word == "version") {
