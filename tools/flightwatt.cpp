@@ -143,10 +143,11 @@ bool is_for_answer(const std::string& word) {
 int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
         cli::print(
-            "flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-            "usage: flightwatt LOG|FOLDER... [--capacity AH]    how long and how far it flies\n"
-            "       flightwatt STAGE [arguments]               more: flightwatt help STAGE\n" +
-            start_text() + stage_list());
+            cli::fitted("flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
+                        "usage: flightwatt LOG|FOLDER... [--capacity AH]    how long and how far it flies\n"
+                        "       flightwatt STAGE [arguments]               more: flightwatt help STAGE\n" +
+                            start_text() + stage_list(),
+                        stdout));
     } else if (word == "--list-stages") {  // for completion and man pages
         for (const auto& stage : all_stages()) cli::print(fmt::format("{}\t{}\n", stage.name, stage.summary));
     } else if (word == "--version" || word == "version") {

@@ -303,7 +303,7 @@ one with the most flights; --each answers for each of them.)"};
                 "payload beyond the aircraft's own mass; default: as flown");
     options.add("mass", question.takeoff_mass_kg, {.value = "KG", .min = 0.0, .max = 10000.0, .needs = {"payload"}},
                 "mass of the aircraft as it flew, where the logs do not state it");
-    options.add("airspeed", question.airspeed_m_per_s, {.value = "M/S", .min = 0.0, .max = 100.0},
+    options.add("airspeed", question.airspeed_m_per_s, {.value = "M_PER_S", .min = 0.0, .max = 100.0},
                 "airspeed of the cruise; default: as flown");
     options.add(
         "wind", arguments.wind, {.value = "SPEED@DEG"},

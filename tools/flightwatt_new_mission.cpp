@@ -4,6 +4,7 @@
 #include "battery/battery.h"
 #include "battery/battery_toml.h"
 #include "cli/output/mission_output.h"
+#include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
 #include "mission/mission_file.h"
@@ -59,17 +60,6 @@ struct NewMissionArguments {
     bool replaces = false;
 };
 
-/// "6@250": 6 m/s from 250 degrees.
-path::Wind parse_wind(const std::string& text) {
-    const auto at = text.find('@');
-    const auto speed = parse_number(std::string_view(text).substr(0, at));
-    const auto from = at == std::string::npos ? std::nullopt : parse_number(std::string_view(text).substr(at + 1));
-    if (!speed || !from)
-        throw UsageError(
-            fmt::format("--wind {}: expected SPEED@FROM: 6@250 is 6 m/s from 250 degrees", one_line(text)));
-    return {*speed, *from};
-}
-
 std::string required_file(const std::optional<std::string>& file, const char* option, const char* made_by) {
     if (!file) throw UsageError(fmt::format("expected --{} FILE, from `flightwatt {}`", option, made_by));
     return *file;
@@ -104,7 +94,7 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     if (arguments.plan)
         fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
                                             mission::new_airspeed_m_per_s(fresh.model));
-    if (arguments.wind) fresh.wind = parse_wind(*arguments.wind);
+    if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
     if (arguments.parameters) boost::algorithm::split(naming.parameters, *arguments.parameters, boost::is_any_of(","));
@@ -186,7 +176,7 @@ key as a comment, with its meaning and an example.)"};
                 "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
     options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},
                 "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
-    options.add("wind", arguments.wind, {.value = "SPEED@FROM", .needs = {"plan"}},
+    options.add("wind", arguments.wind, {.value = "SPEED@DEG", .needs = {"plan"}},
                 "wind along the plan: 6@250 is 6 m/s from 250 degrees");
     options.add("packs", arguments.packs, {.value = "N", .min = 1.0, .max = 1000.0},
                 "fly the cruise with N packs, changed on the ground");

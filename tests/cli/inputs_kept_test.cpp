@@ -120,6 +120,11 @@ std::vector<Command> commands() {
          "--model " + model + " --battery fits/battery/paper.toml --profile fits/compute/tx2-detection.csv",
          {model, "fits/battery/paper.toml", "fits/compute/tx2-detection.csv"},
          "--output"},
+        {"new-mission",
+         "--model fits/mechanical/synthetic-wing.toml --battery fits/battery/paper.toml --plan "
+         "missions/synthetic/field.geojson --force",
+         {"fits/mechanical/synthetic-wing.toml", "fits/battery/paper.toml", "missions/synthetic/field.geojson"},
+         "--output"},
         {"export", "a.data --format gpx", {"a.data", "a.log"}, "--output"},
         {"export", "s.series.csv --format csv", {"s.series.csv"}, "--output"},
         {"export", mission + " missions/paper/plan.toml --format latex", mission_files, "--output"},
@@ -223,12 +228,13 @@ const std::set<std::string> no_files{
     "A",           "AH",    "MB",      "HOW",     "NAME",    "TITLE",       "FONT",
     "HEIGHT",      "ID",    "FLIGHT",  "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
     "NAME[,NAME]", "S|now", "M_PER_S", "PERCENT", "COMMAND", "PORT",        "ADDRESS:PORT",
-    "DEVICE:BAUD", "DATE",  "PATTERN", "TARGET",  "WIDTH",   "DEG",         "SPEED@DEG"};
+    "DEVICE:BAUD", "DATE",  "PATTERN", "TARGET",  "WIDTH",   "DEG",         "SPEED@DEG",
+    "TIME",        "KG",    "M"};
 
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",
                                     "--path-from",  "--follow",  "--log",     "--messages", "--profile",
-                                    "--files-from", "--outline", "--columns"};
+                                    "--files-from", "--outline", "--columns", "--plan"};
 
 class InputsKept : public testing::Test {
   protected:

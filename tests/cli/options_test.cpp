@@ -175,7 +175,7 @@ TEST(Options, AreListedForCompletion) {
 
 TEST(Options, AreDescribedAsJson) {
     const auto json = Declared().options.json();
-    EXPECT_EQ(json.size(), 11U);
+    EXPECT_EQ(json.size(), 12U);
     const auto& capacity = json[3];
     EXPECT_EQ(capacity["name"], "capacity");
     EXPECT_EQ(capacity["type"], "number");
@@ -185,7 +185,7 @@ TEST(Options, AreDescribedAsJson) {
     EXPECT_EQ(json[5]["needs"].dump(), R"(["count","flag"])");
     EXPECT_EQ(json[6]["file"], "input");
     EXPECT_EQ(json[8]["choices"].dump(), R"(["phase","power"])");
-    EXPECT_EQ(json[10]["expert"], true);
+    EXPECT_EQ(json[11]["expert"], true);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::size_t characters_in(const std::string& line) {
 TEST(ScreenTable, HasTheImportantColumnsAndNamesTheOthers) {
     EXPECT_EQ(screen_text(energies(), narrow, {"two flights", {"flight", "energy_wh"}}),
               "two flights\n"
-              "flight  duration      energy_wh\n"
+              "flight  duration     energy_wh\n"
               "first   28 min 32 s      5.017\n"
               "second  27.5 s           0.229\n"
               "not shown: remark, start_altitude_m\n"

@@ -67,7 +67,7 @@ TEST_F(FlightOptions, UseTheRecordingOfAFlightThatHasItsLog) {
         const auto twice = run(stage + " first.data" + sample(1) + sample(2) + sample(3));
         EXPECT_EQ(twice.code, 0) << twice.err;
         EXPECT_THAT(twice.err,
-                    HasSubstr("warning: first: it is excluded: it is the same flight as opterra_synthetic_01"));
+                    HasSubstr("warning: first: it is not used: it is the same flight as opterra_synthetic_01"));
         EXPECT_EQ(twice.out, once.out) << stage;
     }
 }
@@ -218,7 +218,7 @@ TEST_F(FlightOptions, ExcludeAndKeepFlights) {
     expect_effect("validate" + three, "--exclude opterra_synthetic_02");
     expect_effect("battery --name x" + three, "--exclude opterra_synthetic_02");
     const auto batch = run("batch -o out --exclude opterra_synthetic_02" + three);
-    EXPECT_THAT(batch.err, HasSubstr("opterra_synthetic_02: it is excluded from the fit: --exclude names it"));
+    EXPECT_THAT(batch.err, HasSubstr("opterra_synthetic_02: it is not used in the fit: --exclude names it"));
     for (const auto* stage : {"fit", "validate", "battery", "batch -o out"}) {
         const auto unknown = run(stage + three + " --exclude opterra_synthetic_2");
         EXPECT_EQ(unknown.code, usage_error) << stage;
