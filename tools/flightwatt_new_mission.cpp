@@ -47,17 +47,12 @@ struct NewMissionArguments {
     std::optional<std::string> battery;
     std::vector<std::string> profiles;
     std::optional<std::string> parameters;
-    bool is_planned = false;
     std::optional<std::string> name;
     std::optional<std::string> plan;
     std::vector<std::string> blocks;
     std::optional<std::string> wind;
-    std::optional<double> payload_kg;
-    std::optional<double> takeoff_mass_kg;
-    std::optional<double> cruise_s;
-    std::size_t packs = 1;
-    bool shows_all_keys = false;
     bool replaces = false;
+    mission::NewMission mission;  ///< what options state of it
 };
 
 std::string required_file(const std::optional<std::string>& file, const char* option, const char* made_by) {
@@ -79,18 +74,12 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     const auto mechanical = required_file(arguments.model, "model", "batch");
     const auto pack = required_file(arguments.battery, "battery", "battery");
     const auto folder = std::filesystem::absolute(file).parent_path();
-    mission::NewMission fresh;
+    auto fresh = arguments.mission;
     fresh.name = arguments.name.value_or(file.stem().string());
     fresh.mechanical = named_from(folder, mechanical);
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
-    fresh.is_planned = arguments.is_planned;
-    fresh.cruise_s = arguments.cruise_s;
-    fresh.payload_kg = arguments.payload_kg;
-    fresh.takeoff_mass_kg = arguments.takeoff_mass_kg;
-    fresh.packs = arguments.packs;
-    fresh.shows_all_keys = arguments.shows_all_keys;
     if (arguments.plan)
         fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
                                             mission::new_airspeed_m_per_s(fresh.model));
@@ -161,15 +150,15 @@ key as a comment, with its meaning and an example.)"};
                 "software on board, from flightwatt profile; may be given several times");
     options.add("parameters", arguments.parameters, {.value = "A,B", .needs = {"profile"}},
                 "names of the profiles' parameters, where these have flags (powprofiler)");
-    options.add("planned", arguments.is_planned,
+    options.add("planned", arguments.mission.is_planned,
                 "leave the schedule to flightwatt plan: utilities and [plan] instead of [[schedule]]");
     options.add("name", arguments.name, {.value = "NAME"}, "the mission's name; default: FILE's");
-    options.add("cruise", arguments.cruise_s,
+    options.add("cruise", arguments.mission.cruise_s,
                 {.value = "TIME", .min = 0.0, .above_min = true, .unit = "s", .excludes = {"plan"}},
                 "duration of the cruise: 1800, 30min or 0.5h; default: the mean of the model's flights");
-    options.add("payload", arguments.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
+    options.add("payload", arguments.mission.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
                 "what the aircraft carries beyond its own mass");
-    options.add("takeoff-mass", arguments.takeoff_mass_kg,
+    options.add("takeoff-mass", arguments.mission.takeoff_mass_kg,
                 {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}},
                 "its mass as its flights were flown, where they do not show the effect of payload");
     options.add("plan", arguments.plan, cli::input_file("FILE"),
@@ -178,9 +167,9 @@ key as a comment, with its meaning and an example.)"};
                 "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
     options.add("wind", arguments.wind, {.value = "SPEED@DEG", .needs = {"plan"}},
                 "wind along the plan: 6@250 is 6 m/s from 250 degrees");
-    options.add("packs", arguments.packs, {.value = "N", .min = 1.0, .max = 1000.0},
+    options.add("packs", arguments.mission.packs, {.value = "N", .min = 1.0, .max = 1000.0},
                 "fly the cruise with N packs, changed on the ground");
-    options.add("all-keys", arguments.shows_all_keys, "write every key, explained, those not used as comments");
+    options.add("all-keys", arguments.mission.shows_all_keys, "write every key, explained, those not used as comments");
     options.add("force", arguments.replaces, "replace FILE of -o");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_new_mission(call, arguments); });
 }

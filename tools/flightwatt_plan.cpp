@@ -234,7 +234,7 @@ and the result is a table of them (CSV); their schedules are in --json.)"};
         "without any the maximum distance from where the mission returns [m]",
         {.excludes = {"spare-power"}});
     options.add("spare-power", arguments.spare_power,
-                "instead: the largest constant power that may be drawn in addition, by a camera say [W]",
+                "instead: the largest constant power that may be drawn in addition, as by a camera [W]",
                 {.old_name = "largest-payload"});
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return plan_file(call, arguments); });
 }

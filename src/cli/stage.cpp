@@ -40,36 +40,30 @@ bool reader_has_left = false;
 /// --quiet was given.
 bool is_quiet = false;
 
-/// Prints a message for people, on a terminal in lines of its width, elsewhere in one line behind the program: a log of
-/// several stages then shows which it was.
-void print_message(const std::string& program, const std::string& text) {
+/// Prints a message for people, on a terminal in lines of its width, errors and warnings with their colours; elsewhere in
+/// one line behind the program: a log of several stages then shows which it was.
+void print_message(const std::string& program, const std::string& text, bool is_finding = false) {
     auto message = one_line(text);
-    message = ::isatty(STDERR_FILENO) == 1 ? wrapped(message, terminal_columns(stderr)) : program + ": " + message;
-    print_lines(message + '\n');
-}
-
-/// The same of an error or a warning, which have their colours.
-void print_finding(const std::string& program, const std::string& text) {
+    const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
+    message = is_terminal ? wrapped(message, terminal_columns(stderr)) : program + ": " + message;
     const bool is_warning = text.starts_with("warning: ");
     const std::string word = is_warning ? "warning:" : "error:";
-    const auto at = text.find(word);
-    if (!is_coloured(stderr) || at == std::string::npos) return print_message(program, text);
-    auto message = wrapped(one_line(text), terminal_columns(stderr));
-    message.replace(message.find(word), word.size(), (is_warning ? "\x1b[33m" : "\x1b[31m") + word + "\x1b[0m");
+    if (const auto at = message.find(word); is_finding && is_coloured(stderr) && at != std::string::npos)
+        message.replace(at, word.size(), (is_warning ? "\x1b[33m" : "\x1b[31m") + word + "\x1b[0m");
     print_lines(message + '\n');
 }
 
 /// Prints an error with its location; returns the exit code.
 ExitCode failed(ExitCode code, const std::string& program, const std::string& message, const std::string& where = "") {
     const auto prefix = where.empty() ? "" : where + ": ";
-    print_finding(program, fmt::format("{}error: {}", prefix, truncated(message)));
+    print_message(program, fmt::format("{}error: {}", prefix, truncated(message)), true);
     return code;
 }
 
 /// Prints and clears what the call collected.
 void print_diagnostics(const StageCall& call) {
     const auto diagnostics = std::exchange(*call.diagnostics, {});
-    for (const auto& line : diagnostic_lines(diagnostics, call.notes)) print_finding(call.program, line);
+    for (const auto& line : diagnostic_lines(diagnostics, call.notes)) print_message(call.program, line, true);
     const auto notes = call.notes || is_quiet ? "" : notes_line(diagnostics);
     if (!notes.empty()) print_message(call.program, notes);
 }
