@@ -144,8 +144,8 @@ int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
         cli::print(
             cli::fitted("flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
-                        "usage: flightwatt LOG|FOLDER... [--capacity AH]    how long and how far it flies\n"
-                        "       flightwatt STAGE [arguments]               more: flightwatt help STAGE\n" +
+                        "usage: flightwatt LOG|FOLDER... [--capacity AH]\n"
+                        "       flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
                             start_text() + stage_list(),
                         stdout));
     } else if (word == "--list-stages") {  // for completion and man pages
@@ -157,7 +157,7 @@ int run_front(const std::string& word) {
             throw UsageError(fmt::format("'{}' is not a stage; for such a file: {}", word, command));
         const auto near = nearest_word(word, stage_names());
         throw UsageError(
-            fmt::format("there is no stage '{}'; {}", word,
+            fmt::format("there is no stage, file or folder '{}'; {}", word,
                         near.empty() ? "flightwatt alone lists them" : fmt::format("did you mean '{}'?", near)));
     }
     return cli::ok;

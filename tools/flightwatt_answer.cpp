@@ -111,7 +111,7 @@ void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft&
 /// Writes the report of a folder and its mission; returns its name.
 std::string write_page(const cli::StageCall& call, const std::filesystem::path& folder,
                        const mission::MissionVariant& mission) {
-    const auto file = folder / "report.html";
+    const auto file = folder / "answer.html";
     report::ReportInput input;
     input.out = folder;
     input.missions = {mission};
@@ -157,14 +157,15 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     const auto facts = cli::from_flights<answer::FlightFacts>(
         inner, arguments.batch.flights, [](const auto&, const auto& loaded) { return answer::flight_facts(loaded); });
     const auto pack = pack_of_folder(inner, arguments, facts, answer.packs);
-    const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / "pack.toml", facts, pack.answer};
+    const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / answer::pack_name, facts,
+                                         pack.answer};
     const auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
     write_file_atomically(aircraft.battery_file, comment + to_toml(pack.battery));
     answer.pack = pack.answer;
     answer.endurance = answer_endurance(aircraft, arguments.question);
     answer.prediction_error_percent = prediction_error(model);
-    const auto mission_file = folder / "mission.toml";
-    write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, "mission"));
+    const auto mission_file = folder / answer::mission_name;
+    write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, answer.endurance.cruise_s));
     if (!answer.endurance.power_w.value) {
         answer.failsafe_missing = answer.endurance.power_w.unknown;
         return;

@@ -116,10 +116,7 @@ std::optional<cli::FittedBatch> finish_folder(const cli::StageCall& call, const 
     cli::print("\n" + (has_details ? screen_text(fitted->table, screen, {"Table I", {}})
                                    : screen_text(cli::mean_power_table(fitted->fit.model), screen,
                                                  {"mean power of the phases; --notes: Table I", {}})));
-    if (fitted->physical && has_details)
-        cli::print("\n" + cli::physical_text(*fitted->physical, screen));
-    else if (fitted->physical && fitted->physical->speeds)
-        cli::print(fmt::format("\nSpeed to fly\n{}\n", fmt::join(cli::speed_lines(*fitted->physical->speeds), "\n")));
+    if (fitted->physical) cli::print("\n" + cli::physical_text(*fitted->physical, screen));
     return fitted;
 }
 

@@ -39,16 +39,16 @@ report.html: missions/first.csv
 	flightwatt report fits missions/first.toml -o report.html
 
 # State of charge over time.
-missions/first.csv: missions/first.toml fits/model.toml fits/pack.toml
+missions/first.csv: missions/first.toml fits/model.toml fits/answer-pack.toml
 	flightwatt simulate missions/first.toml -o missions/first.csv
 
 # Written once, then yours: every key is explained in it.
-missions/first.toml: | fits/model.toml fits/pack.toml
-	flightwatt new-mission --model fits/model.toml --battery fits/pack.toml -o missions/first.toml
+missions/first.toml: | fits/model.toml fits/answer-pack.toml
+	flightwatt new-mission --model fits/model.toml --battery fits/answer-pack.toml -o missions/first.toml
 
-# How long and how far it flies, the model, the pack and a page: fits/report.html. --capacity is the value on the pack's
+# How long and how far it flies, the model, the pack and a page: fits/answer.html. --capacity is the value on the pack's
 # label [Ah]; without it, that of the logs or an estimate is used. Exit code 3: a log was not used, the others were.
-fits/pack.toml: fits/model.toml
+fits/answer-pack.toml: fits/model.toml
 fits/model.toml: logs $(wildcard logs/*) $(firstword $(MAKEFILE_LIST))
 	flightwatt logs{} -o fits || test $$? = 3
 )",

@@ -65,8 +65,8 @@ Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s
 
 /// The mission of the question with a given duration of its cruise.
 mission::MissionVariation variation_of(const KnownAircraft& aircraft, const Question& question) {
-    const auto text = mission_toml(aircraft, question, "answer");
-    const auto file = aircraft.model_file.parent_path() / "mission.toml";
+    const auto text = mission_toml(aircraft, question);
+    const auto file = aircraft.model_file.parent_path() / mission_name;
     return [text, file](double cruise_s) { return mission::parse_mission(text, file, {.cruise_s = cruise_s}); };
 }
 
@@ -114,13 +114,16 @@ Answered longest(const mission::MissionVariation& with_cruise_s, double other_ph
 
 }  // namespace
 
-std::string mission_toml(const KnownAircraft& aircraft, const Question& question, const std::string& name) {
-    auto text = fmt::format("name = {}\nmechanical = {}\nbattery = {}\nreserve_soc_percent = {}\n", toml_string(name),
+std::string mission_toml(const KnownAircraft& aircraft, const Question& question,
+                         const std::optional<double>& cruise_s) {
+    auto text = fmt::format("name = {}\nmechanical = {}\nbattery = {}\nreserve_soc_percent = {}\n",
+                            toml_string(cruise_s ? "longest flight" : "flight as flown"),
                             toml_string(aircraft.model_file.filename().string()),
                             toml_string(aircraft.battery_file.filename().string()), question.reserve_soc_percent);
     const auto add = [&](const char* key, const std::optional<double>& value) {
         if (value) text += fmt::format("{} = {}\n", key, *value);
     };
+    if (cruise_s) text += fmt::format("duration_s = {{ cruise = {:.0f} }}\n", *cruise_s);
     add("payload_kg", question.payload_kg);
     add("takeoff_mass_kg", question.takeoff_mass_kg);
     add("airspeed_m_per_s", mission_airspeed_m_per_s(aircraft, question));
@@ -149,6 +152,8 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
                                                   : longest(with_cruise_s, other_s, in_95_of_100, basis);
     const bool holds_place = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s && question.wind_m_per_s > 0.0;
     const double cruise_s = endurance.time_s.value.value_or(0.0) - other_s;
+    if (endurance.time_s.value)
+        endurance.cruise_s = std::max(1.0, endurance.time_95_s.value.value_or(*endurance.time_s.value) - other_s);
     if (!endurance.time_s.value)
         endurance.distance_m = unknown(endurance.time_s.unknown);
     else if (holds_place)

@@ -19,6 +19,10 @@
 /// pack and lands with the reserve. Distances are along the wind, out and back, in a steady wind.
 namespace flightwatt::answer {
 
+/// Names of the files of an answer, in the folder of a batch.
+inline constexpr auto pack_name = "answer-pack.toml";
+inline constexpr auto mission_name = "answer-mission.toml";
+
 /// What is asked.
 struct Question {
     double reserve_soc_percent = 20.0;
@@ -39,12 +43,13 @@ struct KnownAircraft {
 
 /// How long and how far, and at what power.
 struct Endurance {
-    bool is_hover = false;                           ///< of a rotorcraft that flies as slowly as it flew
-    Answered power_w;                                ///< mean, of hover or cruise
-    Answered time_s;                                 ///< in the air from a full pack to the reserve
-    Answered time_95_s;                              ///< the same, which 95 of 100 flights reach
-    Answered airspeed_m_per_s;                       ///< in cruise
-    Answered distance_m;                             ///< over ground in the cruise, out and back
+    bool is_hover = false;           ///< of a rotorcraft that flies as slowly as it flew
+    Answered power_w;                ///< mean, of hover or cruise
+    Answered time_s;                 ///< in the air from a full pack to the reserve
+    Answered time_95_s;              ///< the same, which 95 of 100 flights reach
+    std::optional<double> cruise_s;  ///< of the flight that 95 of 100 reach, else of the mean one; absent: unknown
+    Answered airspeed_m_per_s;       ///< in cruise
+    Answered distance_m;             ///< over ground in the cruise, out and back
     std::vector<mechanical::BestSpeed> best_speeds;  ///< of endurance and range; empty where they are not known
     std::vector<std::string> notes;                  ///< doubts of the model's use, such as "extrapolated"
 };
@@ -52,7 +57,9 @@ struct Endurance {
 /// Answers how long and how far. Throws InputError for a reserve, payload or airspeed that no mission accepts.
 Endurance answer_endurance(const KnownAircraft& aircraft, const Question& question);
 
-/// The mission of a question as a file beside the model, with which other commands go on.
-std::string mission_toml(const KnownAircraft& aircraft, const Question& question, const std::string& name);
+/// The mission of a question as a file beside the model, with which other commands go on; its cruise takes `cruise_s`, or
+/// as long as those of the flights.
+std::string mission_toml(const KnownAircraft& aircraft, const Question& question,
+                         const std::optional<double>& cruise_s = std::nullopt);
 
 }  // namespace flightwatt::answer

@@ -85,6 +85,13 @@ std::vector<Command> commands() {
          {"a.log", "missions/paper/phased.toml", "fits/mechanical/opterra-table1.toml"},
          "--record"},
         {"batch", "a.data s.series.csv --published " + model, flight_files + Words{model}, "--output", flight_names},
+        {"answer",
+         "a.data s.series.csv --capacity 3.2 --no-page",
+         flight_files,
+         "--output",
+         {"flights.csv", "answer-pack.toml", "answer-mission.toml"}},
+        {"answer", "a.data s.series.csv --capacity 3.2 --no-page -o answered", flight_files, "--table"},
+        {"trends", "dated/26_0*.data", {"dated/26_01_05__10_00_00.data"}, "--ledger"},
         {"merge",
          "batch",
          {"batch/batch.json", "batch/flights/a.record.json", "batch/flights/a.series.csv", "a.data"},
@@ -234,7 +241,7 @@ const std::set<std::string> no_files{
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",
                                     "--path-from",  "--follow",  "--log",     "--messages", "--profile",
-                                    "--files-from", "--outline", "--columns", "--plan"};
+                                    "--files-from", "--outline", "--columns", "--plan",     "--packs-file"};
 
 class InputsKept : public testing::Test {
   protected:

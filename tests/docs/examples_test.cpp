@@ -72,6 +72,10 @@ Reading reading_of(const DocumentedExample& example, const std::filesystem::path
                   "Laboratory\nday 1\nt_ms,vbat_mv,ibat_ma,height_cm,vn,ve\n0,12000,500,0,0,0\n500,11900,900,10,3,4\n");
         return {"flightwatt-parse", {csv, "--columns", write("columns.toml", example.text), "-o", "copy.csv"}};
     }
+    if (example.kind == "packs") {
+        const auto log = source_dir() / "logs" / "opterra_synthetic_01.data";
+        return {"flightwatt-trends", {log.string(), "--packs-file", file, "-o", "trends.csv"}};
+    }
     return {};
 }
 

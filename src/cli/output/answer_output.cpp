@@ -1,6 +1,7 @@
 #include "cli/output/answer_output.h"
 
 #include "base/text.h"
+#include "base/units.h"
 #include "cli/output/failsafe_output.h"
 #include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
@@ -129,9 +130,11 @@ std::string failsafe_line(const AircraftAnswer& answer) {
     auto text = card.low ? fmt::format("{} from {:.0f} m", action_text("return", *card.low), *card.home_distance_m)
                          : "return unknown: " + card.low_missing;
     text += "; " + action_text("land", card.critical);
-    if (!card.chances_known) text += "; chances unknown";
+    text += card.chances_known ? fmt::format("; too late in {:.0f} of 100 flights",
+                                             units::percent_per_whole * (1.0 - card.probability))
+                               : std::string("; chances unknown");
     auto command =
-        fmt::format("flightwatt export {0}/model.toml {0}/pack.toml --format failsafe-ardupilot --reserve {1:g}",
+        fmt::format("flightwatt export {0}/model.toml {0}/answer-pack.toml --format failsafe-ardupilot --reserve {1:g}",
                     answer.folder, card.reserve_percent);
     if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
