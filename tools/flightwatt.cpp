@@ -145,7 +145,7 @@ int run_front(const std::string& word) {
         cli::print(
             cli::fitted("flightwatt: the energy of electric drone missions, flight and on-board computer together\n\n"
                         "usage: flightwatt LOG|FOLDER... [--capacity AH]\n"
-                        "       flightwatt STAGE [arguments]; more: flightwatt help STAGE\n" +
+                        "       flightwatt STAGE [arguments]\n       flightwatt help STAGE\n" +
                             start_text() + stage_list(),
                         stdout));
     } else if (word == "--list-stages") {  // for completion and man pages

@@ -1,12 +1,14 @@
 // flightwatt LOG...: how long and how far an aircraft flies, from its logs, in one command.
 
 #include "answer/answer.h"
+#include "answer/flight_facts.h"
 #include "answer/pack_answer.h"
 #include "answer/pack_ledger.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "batch/manifest.h"
 #include "battery/battery_toml.h"
+#include "cli/output/aircraft_choice.h"
 #include "cli/output/answer_output.h"
 #include "cli/output/batch_folder.h"
 #include "cli/output/battery_output.h"
@@ -51,7 +53,7 @@ cli::StageCall folder_call(cli::StageCall call, const std::string& folder) {
     return call;
 }
 
-/// The pack of the flights in a folder, with what is said of it, and the health of each that they name.
+/// The pack of the flights in a folder, and the health of each pack that they name.
 answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArguments& arguments,
                                  const std::vector<answer::FlightFacts>& facts, std::vector<answer::Pack>& health) {
     std::vector<answer::PackUse> uses;
@@ -84,7 +86,7 @@ answer::Answered prediction_error(const mechanical::MechanicalModel& model) {
                                                      : "the flights do not predict each other");
 }
 
-/// The values of a failsafe for the mission of the question, or why there are none.
+/// The values of a failsafe for the mission of the question, or the reason why they are absent.
 void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
                   const mission::MissionSetup& mission, cli::AircraftAnswer& answer) {
     if (!aircraft.pack.capacity_ah.value) {
@@ -175,7 +177,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     if (!arguments.no_page) answer.page = write_page(call, folder, mission);
 }
 
-/// The same; what stands in the way is the answer.
+/// The same; an obstacle is the answer.
 cli::AircraftAnswer answer_aircraft(const cli::StageCall& call, const AnswerArguments& arguments,
                                     const AircraftFlights& of) {
     cli::AircraftAnswer answer;
@@ -278,7 +280,7 @@ int flightwatt::stages::answer_stage(int argc, char** argv) {
         "answer", "LOG|FOLDER... [--capacity AH]",
         R"(Answers from logs, in one command: how long and how far the aircraft flies on a full pack, in what power,
 the state of its pack, how well new flights are predicted, and a page with all of it. Each answer states what it rests
-on; what cannot be known says which flight would show it. `flightwatt LOG...` is the same.
+on; where something is unknown, it states which flight would show it. `flightwatt LOG...` is the same.
 
 Logs are ArduPilot's (.bin, .log), PX4's (.ulg), Paparazzi's (.data with its .log) and CSV. Results are in the folder
 of --output (flightwatt-out), and logs that have not changed are not read again. Of several aircraft it answers for the

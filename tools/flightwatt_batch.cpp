@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "batch/batch_run.h"
 #include "batch/manifest.h"
+#include "cli/output/aircraft_choice.h"
 #include "cli/output/batch_folder.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"

@@ -51,13 +51,13 @@ struct Endurance {
     Answered airspeed_m_per_s;       ///< in cruise
     Answered distance_m;             ///< over ground in the cruise, out and back
     std::vector<mechanical::BestSpeed> best_speeds;  ///< of endurance and range; empty where they are not known
-    std::vector<std::string> notes;                  ///< doubts of the model's use, such as "extrapolated"
+    std::vector<std::string> notes;                  ///< limits of the answers, such as "extrapolated"
 };
 
 /// Answers how long and how far. Throws InputError for a reserve, payload or airspeed that no mission accepts.
 Endurance answer_endurance(const KnownAircraft& aircraft, const Question& question);
 
-/// The mission of a question as a file beside the model, with which other commands go on; its cruise takes `cruise_s`, or
+/// The mission of a question as a file next to the model, for other commands; its cruise takes `cruise_s`, or
 /// as long as those of the flights.
 std::string mission_toml(const KnownAircraft& aircraft, const Question& question,
                          const std::optional<double>& cruise_s = std::nullopt);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// What the logs of flights show beside the power of their phases.
+/// What the logs of flights show apart from the power of their phases.
 namespace flightwatt::answer {
 
 /// The cruise of one flight, as far as its log shows it.

@@ -24,7 +24,7 @@ struct PackAnswer {
     std::optional<double> known_down_to_percent = {};      ///< of its charge; below, the voltage is assumed
 };
 
-/// A pack for missions, and what is said of it.
+/// A pack for missions, with the answer about it.
 struct FoundPack {
     battery::Battery battery;
     PackAnswer answer;

@@ -32,7 +32,7 @@ TEST(RepeatedFlights, UsesAFlightOnceUnderWhateverName) {
     EXPECT_THAT(copies_of(flights), ElementsAre(DuplicateFlight{"b", "a", true}));
     EXPECT_THAT(flights[1].selection.flights, IsEmpty());
     EXPECT_EQ(to_string(flights[1].selection.exclusions.back()),
-              "b: it is excluded from the fit: it is the same flight as a, which is used");
+              "b: it is not used in the fit: it is the same flight as a, which is used");
     EXPECT_EQ(flights[2].selection.flights.size(), 1U);
     // Rather that of which the log is there.
     std::filesystem::remove(folder / "in" / "a.data");

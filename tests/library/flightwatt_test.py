@@ -29,7 +29,7 @@ MISSION = os.path.join(PROJECT, "missions", "paper", "phased.toml")
 
 class Summaries(unittest.TestCase):
     def test_every_stage_of_the_program_is_a_function(self):
-        listed = re.findall(r"^  ([a-z-]+) +", subprocess.check_output([PROGRAM], text=True), re.MULTILINE)
+        listed = re.findall(r"^([a-z-]+)\t", subprocess.check_output([PROGRAM, "--list-stages"], text=True), re.MULTILINE)
         self.assertEqual(sorted(name.replace("-", "_") for name in listed), sorted(fw.STAGES))
         for stage in fw.STAGES:
             self.assertTrue(callable(getattr(fw, stage)), stage)

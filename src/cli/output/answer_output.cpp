@@ -2,7 +2,6 @@
 
 #include "base/text.h"
 #include "base/units.h"
-#include "cli/output/failsafe_output.h"
 #include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/terminal.h"
@@ -22,6 +21,47 @@ Fields<Answered> record_fields(const Answered*) {
     return {field("value", &R::value, "in the unit of the key; null: unknown"),
             field("basis", &R::basis, "what it rests on: measured, physics, assumed"),
             field("unknown", &R::unknown, "why there is no value, and what would give one")};
+}
+
+Fields<VoltageThreshold> record_fields(const VoltageThreshold*) {
+    using R = VoltageThreshold;
+    return {
+        field("voltage_v", &R::voltage_v, "of the pack under cruise current, rounded up"),
+        field("probability_too_late", &R::too_late, "null: unknown"),
+        field("probability_too_early", &R::too_early, "10 points of charge or more before the count; null: unknown")};
+}
+
+Fields<FailsafeAction> record_fields(const FailsafeAction*) {
+    using R = FailsafeAction;
+    return {field("soc_percent", &R::soc_percent, "charge at which it acts, rounded up"),
+            field("used_mah", &R::used_mah, "charge used since the full pack"),
+            field("remaining_mah", &R::remaining_mah, "capacity less that, rounded up"),
+            field("current_a", &R::current_a, "in cruise, at this charge"),
+            field("probability_too_late", &R::too_late, "of the count of charge; null: unknown"),
+            field("probability_too_late_interval_95", &R::too_late_95, "in new flights"),
+            field("voltage", &R::voltage, "at this charge; null: constant voltage"),
+            field("voltage_alone", &R::voltage_alone, "early enough with the probability, without a count of charge")};
+}
+
+Fields<GroundedPart> record_fields(const GroundedPart*) {
+    using R = GroundedPart;
+    return {field("ground", &R::ground, "measured, physics or assumption"), field("text", &R::text, "the part")};
+}
+
+Fields<FailsafeCard> record_fields(const FailsafeCard*) {
+    using R = FailsafeCard;
+    return {field("capacity_mah", &R::capacity_mah, "of the pack"),
+            field("reserve_percent", &R::reserve_percent, "to be left at landing"),
+            field("probability", &R::probability, "with which an action is early enough"),
+            field("probability_is_known", &R::chances_known, "false: nothing shows how the power of flights differs"),
+            field("home_distance_m", &R::home_distance_m, "farthest place; null: no value"),
+            field("home_duration_s", &R::home_duration_s, "of the way home, as planned"),
+            field("low", &R::low, "return in time; null: no value"),
+            field("low_missing", &R::low_missing, "why there is no value; empty: there is"),
+            field("critical", &R::critical, "land at once, and keep half of the reserve"),
+            field("probability_landed_short", &R::lands_short, "that the critical action ends a return; null: unknown"),
+            field("empty_voltage_v", &R::empty_voltage_v, "of the empty pack under cruise current"),
+            field("rests_on", &R::grounds, "what the values rest on")};
 }
 
 }  // namespace flightwatt::answer
@@ -183,8 +223,8 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
               not_in_json{}),
         field("packs", &R::packs, "the packs of the flights"),
         field("failsafe", &R::failsafe, "values for an autopilot; null: unknown"),
-        field("failsafe_missing", &R::failsafe_missing, "why there are none"),
-        field("notes", at(&R::endurance, &Endurance::notes), "doubts of these answers"),
+        field("failsafe_missing", &R::failsafe_missing, "the reason why they are absent"),
+        field("notes", at(&R::endurance, &Endurance::notes), "limits of these answers"),
         field("page", &R::page, "file of the report; empty without one"));
 }
 
@@ -214,7 +254,7 @@ std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
     add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,
                                              error.basis)
                                : "unknown: " + error.unknown);
-    add("Doubts", fmt::format("{}", fmt::join(answer.endurance.notes, "; ")));
+    add("Limits", fmt::format("{}", fmt::join(answer.endurance.notes, "; ")));
     add("Page", answer.page);
     return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "answer/answer.h"
+#include "answer/answered.h"
 #include "answer/failsafe.h"
 #include "answer/pack_answer.h"
 #include "answer/pack_ledger.h"
@@ -12,9 +13,10 @@
 
 namespace flightwatt::answer {
 Fields<Answered> record_fields(const Answered*);
-}
+Fields<FailsafeCard> record_fields(const FailsafeCard*);
+}  // namespace flightwatt::answer
 
-/// Output of `flightwatt LOG...`: the answers about one aircraft.
+/// Output of `flightwatt LOG...`: the answers about one aircraft; and JSON of the failsafe card.
 namespace flightwatt::cli {
 
 /// The answers about one aircraft.
@@ -31,7 +33,7 @@ struct AircraftAnswer {
     std::vector<answer::Pack> packs;               ///< that the flights name, with their health
     answer::Answered prediction_error_percent;     ///< of the energy of flights left out
     std::optional<answer::FailsafeCard> failsafe;  ///< of the mission that is asked for
-    std::string failsafe_missing;                  ///< why there is none
+    std::string failsafe_missing;                  ///< the reason why it is absent
     std::string page;                              ///< file of the report; empty without one
 };
 Fields<AircraftAnswer> record_fields(const AircraftAnswer*);

@@ -48,7 +48,7 @@ batch::BatchOptions batch_options(const BatchArguments& arguments, const std::fi
 batch::BatchFlights read_logs(const StageCall& call, const BatchArguments& arguments,
                               const batch::BatchOptions& options, const batch::BatchProgress& progress);
 
-/// Collects what a log's record tells the user, and why it is not used.
+/// Collects the diagnostics of a log's record, and the reason why it is not used.
 void add_diagnostics(const StageCall& call, const batch::BatchFlight& flight);
 
 /// The flights of a folder that can be fitted, by aircraft.

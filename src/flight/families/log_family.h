@@ -66,7 +66,7 @@ double product(const std::vector<double>& values);
 double correct_week_rollover(double utc_s);
 
 /// Returns the capacities of battery monitors by their ids "0", "1" ... from parameters in mAh: of the first monitor
-/// by any of the names `first`, of the monitor N by `others`, in which "N" stands for the number [Ah]. Values that are
+/// by any of the names `first`, of the monitor N by `others`, in which "N" is the number [Ah]. Values that are
 /// not above 0 mean unknown.
 std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
                                                     const std::vector<std::string>& first, const std::string& others);
