@@ -213,6 +213,16 @@ std::vector<batch::AircraftGroup> chosen_groups(const cli::StageCall& call, cons
     return {*most};
 }
 
+/// The arguments with those names of --exclude and --keep that are of these flights.
+AnswerArguments with_names_of(const batch::BatchFlights& flights, AnswerArguments arguments) {
+    const auto is_of_others = [&](const std::string& name) {
+        return std::ranges::none_of(flights, [&](const auto& flight) { return flight.record.flight == name; });
+    };
+    std::erase_if(arguments.batch.flights.load.excluded, is_of_others);
+    std::erase_if(arguments.batch.flights.load.keep, is_of_others);
+    return arguments;
+}
+
 /// Answers for the chosen aircraft; where there are several, each has a folder of its own.
 std::vector<cli::AircraftAnswer> answer_all(const cli::StageCall& call, AnswerArguments arguments,
                                             batch::BatchFlights flights, batch::BatchOptions options) {
@@ -233,7 +243,7 @@ std::vector<cli::AircraftAnswer> answer_all(const cli::StageCall& call, AnswerAr
         AircraftFlights of{group.selector, options, {}, {}};
         of.flights = separate_aircraft(group, listed.flown, of.options);
         of.listed = list_flights(call, of.flights, of.options);
-        answers.push_back(answer_aircraft(call, arguments, of));
+        answers.push_back(answer_aircraft(call, with_names_of(of.flights, arguments), of));
     }
     return answers;
 }
