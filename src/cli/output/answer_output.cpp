@@ -173,9 +173,8 @@ std::string failsafe_line(const AircraftAnswer& answer) {
     text += card.chances_known ? fmt::format("; too late in {:.0f} of 100 flights",
                                              units::percent_per_whole * (1.0 - card.probability))
                                : std::string("; chances unknown");
-    auto command =
-        fmt::format("flightwatt export {0}/model.toml {0}/answer-pack.toml --format failsafe-ardupilot --reserve {1:g}",
-                    answer.folder, card.reserve_percent);
+    // Of the mission, which has the payload and the reserve that were asked for.
+    auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-ardupilot", answer.folder);
     if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
     if (answer.endurance.airspeed_m_per_s.value)
