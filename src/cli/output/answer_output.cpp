@@ -151,6 +151,7 @@ std::string pack_line(const PackAnswer& pack) {
 /// The health of each pack; empty where no flight shows one.
 std::string health_line(const std::vector<answer::Pack>& packs) {
     std::vector<std::string> texts;
+    texts.reserve(packs.size());
     for (const auto& pack : packs)
         texts.push_back(fmt::format("{}{}: {}", packs.size() > 1 ? pack.name + " " : "",
                                     to_string(pack.condition.health), pack.condition.reason));
