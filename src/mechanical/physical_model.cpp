@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -114,6 +115,14 @@ ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean
             variance_w2 * variance_w2 /
             (between_w2 * between_w2 / model.degrees_of_freedom + drift_w2 * drift_w2 / model.drift_degrees_of_freedom);
     return power;
+}
+
+double max_predicted_airspeed_m_per_s(const PhysicalModel& model) {
+    constexpr double beyond_flown = 1.25;
+    constexpr double like_hover_m_per_s = 8.0;
+    if (std::ranges::find(model.terms, PowerTerm::drag) != model.terms.end())
+        return std::numeric_limits<double>::infinity();
+    return std::max(beyond_flown * model.airspeed_m_per_s.high, like_hover_m_per_s);
 }
 
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion) {

@@ -168,6 +168,11 @@ double covariance_of_means_w2(const DriftProcess& drift, double first_s, double 
 /// level, drift and coefficients (docs/methods.md, Power from airspeed and climb), and absent for a single flight's model.
 ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean_values, double duration_s);
 
+/// Returns the airspeed up to which power may be predicted [m/s]: any with a term for drag, which grows with the airspeed.
+/// Without one a quarter more than flown, or 8 m/s, up to which level flight takes a rotorcraft about as much as hover
+/// does: by momentum theory it saves at most what its drag then costs.
+double max_predicted_airspeed_m_per_s(const PhysicalModel& model);
+
 /// Whether the motion is within the range of the model's flights.
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);
 

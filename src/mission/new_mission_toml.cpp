@@ -61,14 +61,8 @@ bool knows_airspeed(const mechanical::MechanicalModel& model) {
 
 void add_aircraft(const NewMission& mission, Values& values) {
     const auto& model = mission.model;
-    std::vector<std::string> durations;
-    for (const auto phase : all_phases) {
-        if (phase == Phase::cruise && mission.flown) continue;
-        const double model_s = std::round(model.phases[phase].duration_s);
-        const double duration_s = phase == Phase::cruise ? mission.cruise_s.value_or(model_s) : model_s;
-        durations.push_back(fmt::format("{} = {}", to_string(phase), duration_s));
-    }
-    values["durations"] = toml_inline_table(durations);
+    const double cruise_s = mission.cruise_s.value_or(std::round(model.phases[Phase::cruise].duration_s));
+    values["cruise"] = mission.flown ? "" : fmt::format("{}", cruise_s);
     // Stated where the physical model makes the cruise's power of it.
     values["physical"] = if_so(knows_airspeed(model) && !mission.flown);
     values["not_physical"] = if_so(!knows_airspeed(model));

@@ -22,6 +22,7 @@ namespace {
 
 /// Limit of the extrapolated power relative to that of the airspeeds that were flown, and of its inverse.
 constexpr double max_power_ratio = 2.0;
+constexpr double noted_part = 0.05;  // of the power: less is within what flights differ by
 
 /// Throws InputError at `where` if the model has no physical part.
 const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& model, const Location& where) {
@@ -38,6 +39,21 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
     const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
     cruise.fourier.a0_w += level.mean_w - model_mean_w;
     mission.cruise_level = level;
+}
+
+/// What the cruise of the model's flights takes beyond level flight straight ahead at their mean airspeed [W].
+double power_beyond_straight_flight_w(const MissionSetup& mission, const mechanical::PhysicalModel& physical) {
+    if (!(physical.mean_airspeed_m_per_s > 0.0)) return 0.0;
+    const auto& cruise = mission.mechanical->phases[Phase::cruise];
+    const auto straight =
+        predicted_power(physical, term_values({physical.mean_airspeed_m_per_s}, physical.load), cruise.duration_s);
+    return std::max(0.0, energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s - straight.mean_w);
+}
+
+std::string near_flown_hint(const mechanical::PhysicalModel& physical) {
+    return fmt::format(
+        "they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights that were flown so",
+        physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high);
 }
 
 constexpr double max_wind_m_per_s = 100.0;
@@ -259,17 +275,22 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     const mechanical::FlightState motion{airspeed};
     const double power = power_w(physical, motion);
     const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
-    if (power > max_power_ratio * power_w(physical, {high}) || power * max_power_ratio < power_w(physical, {low})) {
-        throw InputError(where, beyond,
-                         fmt::format("they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to "
-                                     "flights that were flown so",
-                                     low, high));
-    }
+    if (power > max_power_ratio * power_w(physical, {high}) || power * max_power_ratio < power_w(physical, {low}) ||
+        airspeed > max_predicted_airspeed_m_per_s(physical))
+        throw InputError(where, beyond, near_flown_hint(physical));
     if (!is_within_flown_range(physical, motion))
         mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
     mission.airspeed_m_per_s = airspeed;
     const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
-    set_cruise_level(predicted_power(physical, term_values(motion, physical.load), duration_s), mission);
+    auto level = predicted_power(physical, term_values(motion, physical.load), duration_s);
+    const double added_w = power_beyond_straight_flight_w(mission, physical);
+    level.mean_w += added_w;
+    if (added_w > noted_part * level.mean_w)
+        mission.notes.push_back(fmt::format(
+            "airspeed_m_per_s = {}: {:.0f} W are added to level flight straight ahead, which the turns, climbs and gusts "
+            "of the model's flights took",
+            airspeed, added_w));
+    set_cruise_level(level, mission);
 }
 
 void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& reading, MissionSetup& mission) {
@@ -285,6 +306,13 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     plan.path = read_path(*table, reading, mission_table.optional_table("packs"), mission);
     plan.wind = read_wind(mission_table);
     plan.power = power_model(*table, mission);
+    const double limit = max_predicted_airspeed_m_per_s(plan.power);
+    for (const auto& element : plan.path.elements)
+        if (element.airspeed_m_per_s > limit)
+            throw InputError(table->where(),
+                             fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name,
+                                         element.airspeed_m_per_s),
+                             near_flown_hint(plan.power));
     for (auto& warning : path_warnings(plan, compute_trajectory(plan.path, plan.wind)))
         mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));

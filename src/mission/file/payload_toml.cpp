@@ -110,6 +110,22 @@ void scale_phases(double factor, MechanicalModel& model) {
             if (part && part->mean_power_w) *part->mean_power_w *= factor;
 }
 
+/// Throws InputError for a mass that the power cannot carry, and a payload of more than twice the mass: grams.
+void require_plausible_mass(const TomlTable& table, double mass_kg, double payload_kg, const MechanicalModel& model) {
+    constexpr double max_payload_ratio = 2.0;
+    const double least_w_per_kg = model.is_rotorcraft ? 10.0 : 1.0;  // helicopters take 50 or more, sailplanes 5
+    const auto& cruise = model.phases[flight::Phase::cruise];
+    const double power_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    if (power_w < least_w_per_kg * mass_kg)
+        throw InputError(table.where("takeoff_mass_kg"),
+                         fmt::format("{} kg cannot fly with the {:.0f} W of the model's cruise", mass_kg, power_w),
+                         "give the mass in kilograms");
+    if (payload_kg > max_payload_ratio * mass_kg)
+        throw InputError(table.where("payload_kg"),
+                         fmt::format("a payload of {} kg on an aircraft of {} kg", payload_kg, mass_kg),
+                         "give it in kilograms");
+}
+
 /// Adds an independent standard deviation to that between flights; both relative to the power.
 void widen(double sd, MechanicalModel& model) {
     for (auto& phase : model.phases.values) {
@@ -142,6 +158,7 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
         set_payload(*payload_kg, model.is_rotorcraft, *model.physical);
         return scale_phases(flown_w > 0.0 ? power_w(*model.physical, usual) / flown_w : 1.0, model);
     }
+    if (mass_kg) require_plausible_mass(mission_table, *mass_kg, *payload_kg, model);
     const auto assumed = assume_payload(*payload_kg, mass_kg, model);
     if (assumed.reason.empty())
         throw InputError(where,

@@ -26,6 +26,7 @@ std::filesystem::path folder_with_opterra() {
 
 void write_wing(mechanical::MechanicalModel model, const std::filesystem::path& file) {
     model.physical = test::made_up_wing();
+    model.physical->mean_airspeed_m_per_s = 0.0;  // unknown: its power is that of the terms alone
     model.physical->bins = 100;
     model.physical->bin_s = 30.0;
     model.physical->correlation_s = 60.0;
@@ -315,6 +316,24 @@ TEST(PathToml, APlannedMissionFindsItsWaypoints) {
     EXPECT_NE(planned.find("../w.csv"), std::string::npos) << planned;
     const auto again = std::get<Mission>(parse_mission(planned, folder / "below" / "p.toml"));
     EXPECT_EQ(again.setup.duration_s[Phase::cruise], mission.setup.duration_s[Phase::cruise]);
+}
+
+// A wing that circled took twice what straight flight at the same airspeed was said to take.
+TEST(AirspeedToml, KeepsWhatTurnsAndGustsOfTheFlightsTook) {
+    const auto folder = folder_with_opterra();
+    auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
+    const auto& cruise = model.phases[flight::Phase::cruise];
+    const double flown_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    write_wing(model, folder / "wing.toml");
+    auto wing = mechanical::read_mechanical_model(folder / "wing.toml");
+    wing.physical->mean_airspeed_m_per_s = 12.0;
+    write_text(folder / "wing.toml", mechanical::to_toml(wing));
+    const auto at = [&](const std::string& airspeed) {
+        return scheduled(on_model("wing.toml", "airspeed_m_per_s = " + airspeed), folder / "m.toml");
+    };
+    EXPECT_NEAR(cruise_w(at("12")), flown_w, 1e-9);
+    EXPECT_NEAR(cruise_w(at("14")), flown_w + 0.01 * (2744.0 - 1728.0), 1e-9);
+    EXPECT_THAT(at("12").setup.notes.front(), testing::HasSubstr("W are added to level flight straight ahead"));
 }
 
 }  // namespace

@@ -113,5 +113,22 @@ TEST(PayloadToml, IsRefusedWhereItsEffectIsUnknown) {
     EXPECT_THAT(refusal(model_of({}, true), "takeoff_mass_kg = 2\n"), HasSubstr("belongs to payload_kg"));
 }
 
+// Grams for kilograms gave a megawatt, or let the payload vanish.
+TEST(PayloadToml, RefusesMassesThatCannotBeKilograms) {
+    const auto model = model_of({}, true);
+    EXPECT_THAT(test::rejected([&] { mission_on(model, "payload_kg = 0.5\ntakeoff_mass_kg = 2900\n"); }),
+                HasSubstr("2900 kg cannot fly with the 200 W of the model's cruise; give the mass in kilograms"));
+    EXPECT_THAT(test::rejected([&] { mission_on(model, "payload_kg = 500\ntakeoff_mass_kg = 2.5\n"); }),
+                HasSubstr("a payload of 500 kg on an aircraft of 2.5 kg; give it in kilograms"));
+}
+
+// A rotorcraft that hovered was said to fly any speed with the power of its hover.
+TEST(PayloadToml, RefusesAirspeedsThatAModelWithoutDragCannotKnow) {
+    const auto model = model_of({PowerTerm::constant}, true);
+    EXPECT_NO_THROW(mission_on(model, "airspeed_m_per_s = 8\n"));
+    EXPECT_THAT(test::rejected([&] { mission_on(model, "airspeed_m_per_s = 8.5\n"); }),
+                HasSubstr("airspeed_m_per_s = 8.5 is beyond what the model's flights flew; they flew 0 to 1 m/s"));
+}
+
 }  // namespace
 }  // namespace flightwatt::mission
