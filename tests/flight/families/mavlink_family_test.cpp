@@ -42,8 +42,8 @@ TEST(MavlinkFamily, HasThePhasesAndEnergyOfAFlight) {
     const auto flight = load_flight(written(test::tlog_of_flight()));
     ASSERT_EQ(flight.phases.sorties.size(), 1U);
     const auto& phases = flight.phases.sorties.front();
-    EXPECT_NEAR(phases.phases.front().start_s, 30.0, 1.0);
-    EXPECT_NEAR(phases.phases.back().end_s, 270.0, 1.0);
+    EXPECT_NEAR(phases.start_s(), 30.0, 1.0);
+    EXPECT_NEAR(phases.end_s(), 270.0, 1.0);
     EXPECT_EQ(flight.series.aircraft_name, "ArduCopter");
     EXPECT_EQ(flight.series.firmware, "rotorcraft");
     EXPECT_NEAR(value_at(flight.data.power_w, 100.0), 237.0, 1e-9);
