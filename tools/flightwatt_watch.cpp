@@ -148,10 +148,11 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
         options.configuration = telemetry::parse_log_configuration(*log_text, *file);
     }
     const auto source = cli::open_source(call, arguments.source);
+    options.is_mavlink = cli::is_mavlink_source(arguments.source);
     std::optional<live::Recorder> recorder;
     if (const auto& folder = arguments.record) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-        recorder.emplace(*folder, live::log_name(now), log_text);
+        recorder.emplace(*folder, live::log_name(now), log_text, options.is_mavlink ? ".tlog" : ".data");
         options.on_lines = [&](std::string_view lines, bool restarts) { recorder->write(lines, restarts); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
@@ -184,14 +185,15 @@ int flightwatt::stages::watch_stage(int argc, char** argv) {
 landing, as flightwatt predict does from the same telemetry; with a mission also the schedule from here,
 and with --replan one that is planned again in flight. On a terminal it is one screen; else a line a
 second, with --json an object a line, with --serve also a page for a browser (docs/live.md). It ends
-with its source, or by a signal, and then prints its last prediction. The source is one of --follow, --udp,
---serial, --ivy and - (the standard input).)"};
+with its source, or by a signal, and then prints its last prediction. The source is one of --follow,
+--mavlink, --udp, --serial, --ivy and - (the standard input).)"};
     stage.min_inputs = 0;
     stage.is_live = true;
     stage.json_schema = cli::document_schema<cli::WatchState, cli::WatchEnd>;
     stage.max_inputs = 1;
     stage.output_help = "write the last prediction to FILE, when it ends, instead of the standard output";
-    stage.examples = {"flightwatt watch --udp 4242 --log flight.log --mission mission.toml --serve 8080",
+    stage.examples = {"flightwatt watch --mavlink udp:14550 --mission mission.toml --serve 8080",
+                      "flightwatt watch --udp 4242 --log flight.log --mission mission.toml --serve 8080",
                       "flightwatt watch --follow flight.data --model model.toml --remaining 600 --json"};
     WatchArguments arguments;
     arguments.live.silence_threshold_s = 30.0;

@@ -17,7 +17,7 @@ struct KnownFile {
     std::string sign;    ///< regular expression that finds it; empty: none does
 };
 
-/// In the order of the search. A capture of MAVLink begins with the time in microseconds of this century.
+/// In the order of the search. A recording of MAVLink begins with a time of this century in microseconds.
 const std::vector<KnownFile>& known_files() {
     using enum FileKind;
     constexpr auto path_remedy = "a mission names it in its [path]; `flightwatt new-mission` writes a mission";
@@ -32,10 +32,8 @@ const std::vector<KnownFile>& known_files() {
         {foreign, "a program", "",
          "^\x7F"
          "ELF"},
-        {foreign, "a capture of MAVLink (.tlog)", "give the log that the autopilot wrote: its .bin or .ulg",
-         "^\\x00[\\x04-\\x06][\\s\\S]{6}[\xFD\xFE]"},
-        {log, "a log", "expected a .data log, .LOG or .tlm of Paparazzi, a .bin or .ulg, or a CSV of a flight",
-         "(^|\n)([0-9.]+ [^ \n]+ [A-Z]|FMT, ?128)|^(\xA3\x95\x80|ULog\x01)"},
+        {log, "a log", "expected a .data log, .LOG or .tlm of Paparazzi, a .bin, .ulg or .tlog, or a CSV of a flight",
+         "(^|\n)([0-9.]+ [^ \n]+ [A-Z]|FMT, ?128)|^(\xA3\x95\x80|ULog\x01|\\x00[\\x03-\\x0E][\\s\\S]{6}[\xFD\xFE])"},
         {unknown, "", "", "[\\x00-\\x08]"},  // binary: a log, or nothing that is known
         {mission, "a mission", "write one with `flightwatt new-mission`", R"((^|\n)\[*(battery|mechanical)\b)"},
         {mechanical_model, "a mechanical model", "fit one with `flightwatt batch` or `fit`", R"((^|\n)\[*takeoff\b)"},

@@ -29,7 +29,8 @@ bool is_result(const std::filesystem::path& csv) {
     return std::filesystem::exists(csv.parent_path() / (name + ".record.json"), none);
 }
 
-/// .data, of SD cards .LOG and .tlm, and of other autopilots .bin, .ulg and .px4log, compressed or not. An X.LOG that is XML
+/// .data, of SD cards .LOG and .tlm, of other autopilots .bin, .ulg and .px4log, of ground stations .tlog, compressed or
+/// not. An X.LOG that is XML
 /// defines the messages of X.tlm; a .log counts if it is a DataFlash log as text. Of the tables of ulog2csv one counts,
 /// of other tables those that are flights.
 bool is_log_name(const std::filesystem::path& path, const std::optional<std::filesystem::path>& columns) {
@@ -41,8 +42,8 @@ bool is_log_name(const std::filesystem::path& path, const std::optional<std::fil
         name.resize(name.size() - packed.size());
         break;
     }
-    constexpr std::array<std::string_view, 8> endings{".data", ".LOG", ".tlm", ".TLM",
-                                                      ".bin",  ".BIN", ".ulg", ".px4log"};
+    constexpr std::array<std::string_view, 10> endings{".data", ".LOG", ".tlm",    ".TLM",  ".bin",
+                                                       ".BIN",  ".ulg", ".px4log", ".tlog", ".TLOG"};
     const bool is_log = std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
     if (name.ends_with(".log"))
         return telemetry::detect_autopilot_format(telemetry::beginning_of_file(path)).has_value();

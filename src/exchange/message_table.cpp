@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -117,15 +118,21 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
     return result;
 }
 
-/// The log of another autopilot with that message, and the times of all others, which show the recordings.
+/// The log of another autopilot with that message of each aircraft, and the times of all others, which show the
+/// recordings.
 telemetry::TelemetryLog read_autopilot_message(const flight::FlightFile& file, const std::string& message) {
     const auto read = [&](const std::vector<telemetry::MessageRequest>& wanted) {
-        return read_autopilot_log(file.text(), file.autopilot().value(), file.path(), wanted);
+        return read_autopilot_logs(file.text(), file.autopilot().value(), file.path(), wanted);
     };
     std::vector<telemetry::MessageRequest> wanted;
-    for (auto& [name, count, fields] : read({}).messages)
-        wanted.push_back({name, name == message ? std::move(fields) : std::vector<std::string>()});
-    return read(wanted).log;
+    for (auto& log : read({}))
+        for (auto& [name, count, fields] : log.messages)
+            if (std::ranges::find(wanted, name, &telemetry::MessageRequest::message) == wanted.end())
+                wanted.push_back({name, name == message ? std::move(fields) : std::vector<std::string>()});
+    auto logs = read(wanted);
+    for (std::size_t i = 1; i < logs.size(); ++i)
+        std::ranges::move(logs[i].log.senders, std::back_inserter(logs.front().log.senders));
+    return std::move(logs.front().log);
 }
 
 telemetry::TelemetryLog read_message_of(const flight::FlightFile& file, const std::string& message) {

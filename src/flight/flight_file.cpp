@@ -7,6 +7,7 @@
 #include "flight/families/ardupilot_family.h"
 #include "flight/families/log_family.h"
 #include "flight/families/mapped_csv.h"
+#include "flight/families/mavlink_family.h"
 #include "flight/families/px4_family.h"
 #include "flight/flight_identity.h"
 #include "flight/series_file.h"
@@ -88,17 +89,39 @@ std::string error_of_definitions(const std::filesystem::path& log, bool for_fram
     return "";
 }
 
-std::vector<FlightSeries> read_autopilot(const FlightFile& file) {
-    const auto format = file.autopilot().value();
+const LogFamily& family_of(telemetry::AutopilotFormat format) {
     using telemetry::AutopilotFormat;
-    const bool is_px4 = format == AutopilotFormat::ulog || format == AutopilotFormat::ulog_tables;
-    const auto& family = is_px4                              ? px4_family()
-                         : format == AutopilotFormat::sdlog2 ? sdlog2_family()
-                                                             : ardupilot_family();
-    auto read = read_autopilot_log(file.text(), format, file.path(), family_messages(family));
-    std::vector<FlightSeries> recordings;
-    for (auto& log : recordings_of(std::move(read.log)))
-        recordings.push_back(family_series({std::move(log), read.facts, read.messages}, family));
+    switch (format) {
+        case AutopilotFormat::ulog:
+        case AutopilotFormat::ulog_tables:
+            return px4_family();
+        case AutopilotFormat::sdlog2:
+            return sdlog2_family();
+        case AutopilotFormat::tlog:
+            return mavlink_family();
+        default:
+            return ardupilot_family();
+    }
+}
+
+/// The recordings of each aircraft in a log; several of a ground station's log are candidates of the same recording.
+std::vector<Candidates> read_autopilot(const FlightFile& file) {
+    const auto format = file.autopilot().value();
+    const auto& family = family_of(format);
+    auto logs = read_autopilot_logs(file.text(), format, file.path(), family_messages(family));
+    std::vector<Candidates> recordings;
+    for (auto& read : logs) {
+        const auto system = read.log.senders.front().id;
+        std::size_t number = 0;
+        for (auto& log : recordings_of(std::move(read.log))) {
+            if (recordings.size() == number) recordings.emplace_back();
+            telemetry::AutopilotLog part{std::move(log), read.facts, read.messages};
+            auto series = format == telemetry::AutopilotFormat::tlog ? mavlink_series(std::move(part))
+                                                                     : family_series(std::move(part), family);
+            if (logs.size() > 1) series.aircraft_name += " " + system;
+            recordings[number++].push_back(std::move(series));
+        }
+    }
     return recordings;
 }
 
@@ -122,14 +145,20 @@ std::vector<Candidates> parse_single(const FlightFile& file, const AircraftReque
                                      std::set<std::string>& ids) {
     const auto& map = file.column_map();
     std::vector<Candidates> recordings;
-    for (auto& series : map                ? parse_mapped_csv(file.text(), file.path(), *map)
-                        : file.is_series() ? parse_series_recordings(file.text(), file.path())
-                                           : read_autopilot(file)) {
-        ids.insert(series.aircraft_id);
-        auto& candidates = recordings.emplace_back();
-        if (!aircraft.name || !aircraft.required || series.aircraft_id.empty() || series.flight == *aircraft.name ||
-            !named_aircraft(*aircraft.name, {{series.aircraft_id, series.aircraft_name}}).empty())
-            candidates.push_back(std::move(series));
+    if (!map && !file.is_series()) {
+        recordings = read_autopilot(file);
+    } else {
+        for (auto& series :
+             map ? parse_mapped_csv(file.text(), file.path(), *map) : parse_series_recordings(file.text(), file.path()))
+            recordings.push_back({std::move(series)});
+    }
+    for (auto& candidates : recordings) {
+        for (const auto& series : candidates) ids.insert(series.aircraft_id);
+        std::erase_if(candidates, [&](const FlightSeries& series) {
+            return aircraft.name && aircraft.required && !series.aircraft_id.empty() &&
+                   series.flight != *aircraft.name &&
+                   named_aircraft(*aircraft.name, {{series.aircraft_id, series.aircraft_name}}).empty();
+        });
     }
     return recordings;
 }
@@ -226,8 +255,8 @@ std::vector<std::string> list_message_counts(const FlightFile& file) {
     std::vector<std::string> names;
     if (file.is_series()) return names;
     if (file.autopilot()) {
-        for (const auto& of : read_autopilot_log(file.text(), *file.autopilot(), file.path(), {}).messages)
-            names.push_back(fmt::format("{} {}", of.name, of.count));
+        for (const auto& log : read_autopilot_logs(file.text(), *file.autopilot(), file.path(), {}))
+            for (const auto& of : log.messages) names.push_back(fmt::format("{} {}", of.name, of.count));
         return names;
     }
     const auto counts = file.framing()

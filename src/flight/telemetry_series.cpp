@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "flight/families/derived_tracks.h"
 #include "flight/families/log_family.h"
+#include "flight/families/mavlink_family.h"
 #include "telemetry/recordings.h"
 
 #include <algorithm>
@@ -346,6 +347,12 @@ FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string
     if (auto step = find_clock_step(*sender)) series.skipped.push_back(*std::move(step));
     series.tracks = logged_tracks(*sender);
     return series;
+}
+
+std::vector<telemetry::MessageRequest> mavlink_flight_messages() { return family_messages(mavlink_family()); }
+
+FlightSeries mavlink_series(telemetry::AutopilotLog log) {
+    return family_series(without_doubtful_messages(std::move(log)), mavlink_family());
 }
 
 FlightSeries family_series(telemetry::AutopilotLog read, const LogFamily& family) {

@@ -34,6 +34,13 @@ std::vector<std::string> telemetry_senders(const telemetry::TelemetryLog& log);
 /// Returns the series of one aircraft, unchecked (see require_power()); without tracks if it sent nothing.
 FlightSeries flight_series(const telemetry::TelemetryLog& log, const std::string& aircraft_id);
 
+/// Returns the messages and fields of MAVLink that a FlightSeries is made of.
+std::vector<telemetry::MessageRequest> mavlink_flight_messages();
+
+/// Returns the series of a vehicle by its messages of MAVLink, as far as they state facts: an airspeed without a sensor is
+/// an estimate and left out, and of two messages of one battery the one with more of it counts.
+FlightSeries mavlink_series(telemetry::AutopilotLog log);
+
 /// Returns the series of the aircraft of an autopilot's log.
 FlightSeries family_series(telemetry::AutopilotLog log, const LogFamily& family);
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/overwrite_guard.h"
+#include "flight/telemetry_series.h"
 #include "live/sources/message_readers.h"
 
 #include <algorithm>
@@ -167,6 +168,12 @@ std::unique_ptr<MessageSource> open_standard_input() { return std::make_unique<S
 std::unique_ptr<MessageSource> follow_data_file(const std::filesystem::path& path) {
     return std::make_unique<FollowedFile<TextReader>>(
         path, "expected the .data file that the ground station writes; for a pipe: flightwatt watch - < PIPE");
+}
+
+std::unique_ptr<MessageSource> follow_tlog(const std::filesystem::path& path) {
+    return std::make_unique<FollowedFile<MavlinkReader>>(
+        path, "expected the .tlog that a ground station writes",
+        std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()), true);
 }
 
 std::unique_ptr<MessageSource> follow_binary_log(const std::filesystem::path& path,

@@ -10,8 +10,10 @@
 #include "live/state/telemetry_store.h"
 #include "mechanical/prediction.h"
 #include "path/path_tracker.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <iterator>
@@ -28,7 +30,8 @@ class LiveFlight::Impl {
         : options_(std::move(options)),
           input_(std::move(input)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion)) {
+          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion),
+                 options_.is_mavlink) {
         if (options_.aircraft_id) store_.keep_only(aircraft_ = *options_.aircraft_id);
         if (!input_ || !input_->battery) return;
         for (const auto& warning : battery_warnings(*input_->battery))
@@ -83,8 +86,12 @@ class LiveFlight::Impl {
         while (store_.rows() > 2 * options_.max_rows) store_.thin();
         if (!options_.on_lines || accepted_.empty()) return;
         std::string lines;
-        for (const auto& line : accepted_)
-            fmt::format_to(std::back_inserter(lines), "{} {}\n", *line.time_s, line.text);
+        for (const auto& line : accepted_) {
+            if (line.packet.empty())
+                fmt::format_to(std::back_inserter(lines), "{} {}\n", *line.time_s, line.text);
+            else
+                lines += telemetry::tlog_entry(begin_unix_s_ + *line.time_s, line.packet);
+        }
         options_.on_lines(lines, clock_restarted);
     }
 
@@ -114,6 +121,7 @@ class LiveFlight::Impl {
     std::optional<PredictionInput> input_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
+    double begin_unix_s_ = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     static constexpr std::size_t max_senders = 32;            ///< with clocks and counts; further ones share a clock
     std::map<std::string, ClockFilter, std::less<>> clocks_;  ///< of the senders
     std::map<std::string, std::size_t, std::less<>> messages_of_;  ///< the senders

@@ -22,8 +22,10 @@ struct LiveOptions {
     std::string flight = "live";                                    ///< name of the flight
     std::optional<std::string> aircraft_id = {};                    ///< absent: the aircraft that sends most
     std::optional<telemetry::LogConfiguration> configuration = {};  ///< definitions; absent: the built-in ones
+    bool is_mavlink = false;                                        ///< the messages are MAVLink's
     double silence_threshold_s = 30.0;  ///< time without a message after which there is an alarm
-    /// Called with the accepted .data lines in their order, with whether the clock restarted before them.
+    /// Called with the accepted .data lines in their order (of MAVLink the entries of a .tlog), with whether the clock
+    /// restarted before them.
     std::function<void(std::string_view lines, bool clock_restarted)> on_lines = {};
     std::size_t max_rows = 30'000;  ///< maximum number of messages in memory
 };

@@ -1,13 +1,18 @@
 #include "live/received_links.h"
 
 #include "base/error.h"
+#include "flight/telemetry_series.h"
 #include "live/sources/endpoints.h"
 #include "live/sources/ivy_agent.h"
 #include "live/sources/message_readers.h"
+#include "telemetry/mavlink_sender.h"
 
 #include <array>
 #include <chrono>
+#include <functional>
 #include <map>
+#include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -48,12 +53,14 @@ class ReceivingSource : public MessageSource {
     std::thread thread_;
 };
 
-/// Link frames over UDP. Each sender has a reader of its own, so that damage in one stream does not affect another.
+/// The reader of a stream whose messages go to a queue.
+using ReaderFor = std::function<std::unique_ptr<ByteReader>(MessageQueue&)>;
+
+/// Datagrams. Each sender has a reader of its own, so that damage in one stream does not affect another.
 class UdpReceiver {
   public:
-    UdpReceiver(asio::io_context& context, MessageQueue& queue, const udp::endpoint& at,
-                LinkReader::Definitions definitions)
-        : queue_(queue), definitions_(std::move(definitions)), socket_(context) {
+    UdpReceiver(asio::io_context& context, MessageQueue& queue, const udp::endpoint& at, ReaderFor reader_for)
+        : queue_(queue), reader_for_(std::move(reader_for)), socket_(context) {
         try {
             socket_ = udp::socket(context, at);
         } catch (const boost::system::system_error& error) {
@@ -79,29 +86,27 @@ class UdpReceiver {
         }
     }
 
-    LinkReader& reader_of(const udp::endpoint& sender) {
+    ByteReader& reader_of(const udp::endpoint& sender) {
         constexpr std::size_t max_senders = 16;
         if (readers_.size() == max_senders && !readers_.contains(sender)) readers_.clear();
-        return readers_.try_emplace(sender, queue_, definitions_, telemetry::Framing::link).first->second;
+        auto& reader = readers_[sender];
+        if (!reader) reader = reader_for_(queue_);
+        return *reader;
     }
 
     MessageQueue& queue_;
-    LinkReader::Definitions definitions_;
+    ReaderFor reader_for_;
     udp::socket socket_;
     std::array<char, 65'536> datagram_{};
-    std::map<udp::endpoint, LinkReader> readers_;
+    std::map<udp::endpoint, std::unique_ptr<ByteReader>> readers_;
 };
 
-/// Link frames or XBee packets over a serial line. A device that was unplugged is reopened.
+/// The bytes of a serial line. A device that was unplugged is reopened.
 class SerialReceiver {
   public:
     /// Throws InputError where the device is missing or does not support the speed.
-    SerialReceiver(asio::io_context& context, MessageQueue& queue, SerialLine line, LinkReader::Definitions definitions)
-        : queue_(queue),
-          line_(std::move(line)),
-          port_(context),
-          timer_(context),
-          reader_(queue, std::move(definitions)) {
+    SerialReceiver(asio::io_context& context, MessageQueue& queue, SerialLine line, const ReaderFor& reader_for)
+        : queue_(queue), line_(std::move(line)), port_(context), timer_(context), reader_(reader_for(queue)) {
         if (const auto error = open_serial_line(line_, port_)) {
             throw InputError(
                 {line_.device},
@@ -117,9 +122,9 @@ class SerialReceiver {
             error_code error;
             const auto count = co_await port_.async_read_some(asio::buffer(received_),
                                                               asio::redirect_error(asio::use_awaitable, error));
-            reader_.push({received_.data(), count});
+            reader_->push({received_.data(), count});
             if (!error) continue;
-            reader_.restart();
+            reader_->restart();
             port_.close(error);
             do {
                 timer_.expires_after(std::chrono::milliseconds(250));
@@ -133,8 +138,78 @@ class SerialReceiver {
     SerialLine line_;
     asio::serial_port port_;
     asio::steady_timer timer_;
-    LinkReader reader_;
+    std::unique_ptr<ByteReader> reader_;
     std::array<char, 4096> received_{};
+};
+
+/// The bytes of a connection to a program, over TCP or (udpout) as datagrams after it heard of this one. A connection that
+/// is lost is opened again.
+template <typename Protocol>
+class ConnectedReceiver {
+  public:
+    /// `greeting` is sent once a second, if it is not empty.
+    ConnectedReceiver(asio::io_context& context, MessageQueue& queue, std::string host, std::string port,
+                      std::function<std::string()> greeting, const ReaderFor& reader_for)
+        : queue_(queue),
+          host_(std::move(host)),
+          port_(std::move(port)),
+          greeting_(std::move(greeting)),
+          socket_(context),
+          timer_(context),
+          reader_(reader_for(queue)) {
+        if (const auto error = connect()) {
+            throw InputError({fmt::format("{}:{}", host_, port_)}, fmt::format("cannot connect: {}", error.message()),
+                             "check that the program that sends MAVLink runs, and its address");
+        }
+        asio::co_spawn(context, receive(), asio::detached);
+        if (greeting_) asio::co_spawn(context, greet(), asio::detached);
+    }
+
+  private:
+    error_code connect() {
+        error_code error;
+        typename Protocol::resolver resolver(socket_.get_executor());
+        const auto found = resolver.resolve(host_, port_, error);
+        if (!error) asio::connect(socket_, found, error);
+        if (!error) close_on_exec(socket_);
+        return error;
+    }
+
+    asio::awaitable<void> receive() {
+        for (;;) {
+            error_code error;
+            const auto count = co_await socket_.async_receive(asio::buffer(received_),
+                                                              asio::redirect_error(asio::use_awaitable, error));
+            if (!error) reader_->push({received_.data(), count});
+            if (!error) continue;
+            reader_->restart();
+            do {
+                socket_.close(error);
+                asio::steady_timer pause(socket_.get_executor(), std::chrono::seconds(1));
+                co_await pause.async_wait(asio::use_awaitable);
+            } while (connect());
+            queue_.count_restart();
+        }
+    }
+
+    asio::awaitable<void> greet() {
+        for (;;) {
+            error_code ignored;
+            const auto packet = greeting_();
+            socket_.send(asio::buffer(packet), 0, ignored);
+            timer_.expires_after(std::chrono::seconds(1));
+            co_await timer_.async_wait(asio::use_awaitable);
+        }
+    }
+
+    MessageQueue& queue_;
+    std::string host_;
+    std::string port_;
+    std::function<std::string()> greeting_;
+    typename Protocol::socket socket_;
+    asio::steady_timer timer_;
+    std::unique_ptr<ByteReader> reader_;
+    std::array<char, 65'536> received_{};
 };
 
 /// Telemetry from an Ivy bus.
@@ -157,8 +232,24 @@ class IvyReceiver {
     IvyAgent agent_;
 };
 
-LinkReader::Definitions share(telemetry::MessageDictionary definitions) {
-    return std::make_shared<const telemetry::MessageDictionary>(std::move(definitions));
+/// Readers of Paparazzi's frames; on a serial line they may be an XBee's packets.
+ReaderFor link_readers(telemetry::MessageDictionary definitions, std::optional<telemetry::Framing> framing) {
+    const auto shared = std::make_shared<const telemetry::MessageDictionary>(std::move(definitions));
+    return [=](MessageQueue& queue) { return std::make_unique<LinkReader>(queue, shared, framing); };
+}
+
+/// Readers of MAVLink that know the same vehicles.
+ReaderFor mavlink_readers() {
+    const auto vehicles = std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages());
+    return [=](MessageQueue& queue) { return std::make_unique<MavlinkReader>(queue, vehicles, false); };
+}
+
+/// Splits "HOST:PORT". Throws UsageError for another text.
+std::pair<std::string, std::string> host_and_port(std::string_view text) {
+    const auto colon = text.rfind(':');
+    if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size())
+        throw UsageError(fmt::format("'{}': expected HOST:PORT", text));
+    return {std::string(text.substr(0, colon)), std::string(text.substr(colon + 1))};
 }
 
 }  // namespace
@@ -169,14 +260,37 @@ std::unique_ptr<MessageSource> open_ivy_bus(std::string_view bus, double clock_f
 
 std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageDictionary definitions,
                                         double clock_factor) {
-    return std::make_unique<ReceivingSource<UdpReceiver>>(clock_factor, parse_udp_address(at),
-                                                          share(std::move(definitions)));
+    return std::make_unique<ReceivingSource<UdpReceiver>>(
+        clock_factor, parse_udp_address(at), link_readers(std::move(definitions), telemetry::Framing::link));
 }
 
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor) {
     return std::make_unique<ReceivingSource<SerialReceiver>>(clock_factor, parse_serial_line(line),
-                                                             share(std::move(definitions)));
+                                                             link_readers(std::move(definitions), std::nullopt));
+}
+
+std::unique_ptr<MessageSource> open_mavlink(std::string_view link, double clock_factor) {
+    const auto behind = [&](std::string_view prefix) { return link.substr(prefix.size()); };
+    if (link.starts_with("udp:"))
+        return std::make_unique<ReceivingSource<UdpReceiver>>(clock_factor, parse_udp_address(behind("udp:")),
+                                                              mavlink_readers());
+    if (link.starts_with("udpout:")) {
+        const auto [host, port] = host_and_port(behind("udpout:"));
+        const auto heartbeat = [sender = telemetry::MavlinkSender()]() mutable { return sender.heartbeat(); };
+        return std::make_unique<ReceivingSource<ConnectedReceiver<udp>>>(clock_factor, host, port, heartbeat,
+                                                                         mavlink_readers());
+    }
+    if (link.starts_with("tcp:")) {
+        const auto [host, port] = host_and_port(behind("tcp:"));
+        return std::make_unique<ReceivingSource<ConnectedReceiver<asio::ip::tcp>>>(
+            clock_factor, host, port, std::function<std::string()>(), mavlink_readers());
+    }
+    if (link.starts_with('/'))
+        return std::make_unique<ReceivingSource<SerialReceiver>>(clock_factor, parse_serial_line(link),
+                                                                 mavlink_readers());
+    throw UsageError(fmt::format(
+        "'{}': expected udp:14550, udpout:HOST:PORT, tcp:HOST:PORT or a serial line /dev/ttyUSB0:57600", link));
 }
 
 }  // namespace flightwatt::live

@@ -22,4 +22,9 @@ std::unique_ptr<MessageSource> open_udp(std::string_view at, telemetry::MessageD
 std::unique_ptr<MessageSource> open_serial(std::string_view line, telemetry::MessageDictionary definitions,
                                            double clock_factor = 1.0);
 
+/// Opens a link of MAVLink: "udp:14550" (a port of this machine, or ADDRESS:PORT), "udpout:HOST:PORT" (to a program that
+/// sends to those from which it hears: a heartbeat is sent once a second), "tcp:HOST:PORT", or a serial line
+/// "/dev/ttyUSB0:57600". Nothing else is sent. A lost connection is opened again.
+std::unique_ptr<MessageSource> open_mavlink(std::string_view link, double clock_factor = 1.0);
+
 }  // namespace flightwatt::live

@@ -27,8 +27,9 @@ bool make_new_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text)
-    : folder_(std::move(folder)), name_(std::move(name)), log_text_(std::move(log_text)) {
+Recorder::Recorder(std::filesystem::path folder, std::string name, std::optional<std::string> log_text,
+                   std::string ending)
+    : folder_(std::move(folder)), name_(std::move(name)), log_text_(std::move(log_text)), ending_(std::move(ending)) {
     make_directories(folder_);
 }
 
@@ -36,7 +37,7 @@ void Recorder::open_next() {
     constexpr std::size_t max_files = 10'000;
     while (++number_ < max_files) {
         const auto stem = number_ == 1 ? name_ : fmt::format("{}_{}", name_, number_);
-        const auto data = folder_ / (stem + ".data");
+        const auto data = folder_ / (stem + ending_);
         const auto log = folder_ / (stem + ".log");
         if (std::filesystem::exists(log) || !make_new_file(data)) continue;
         if (log_text_) write_file_atomically(log, *log_text_);

@@ -22,6 +22,7 @@ struct IncomingMessage {
     std::string text;  ///< "20 ENERGY 57 11.62 1.64 19.1 0.08 0.97": sender, name, fields
     bool is_after_restart = false;    ///< first message after a file was replaced or a link reopened
     std::vector<double> values = {};  ///< of the fields, NaN for text and arrays; empty: they are in `text`
+    std::string packet = {};  ///< MAVLink's bytes; its `text` has sender and name, `values` the requested fields
 };
 
 /// Counters of a source; they never decrease.

@@ -147,7 +147,7 @@ std::string flight_name(const std::filesystem::path& data_file) {
     };
     strip_first({".gz", ".bz2", ".xz", ".zst"});
     strip_first({".series.csv", ".data", ".csv", ".CSV", ".tsv", ".txt", ".LOG", ".log", ".tlm", ".TLM", ".bin", ".BIN",
-                 ".ulg", ".px4log"});
+                 ".ulg", ".px4log", ".tlog", ".TLOG"});
     return without_topic(std::move(name));
 }
 

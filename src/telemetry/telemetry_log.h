@@ -66,9 +66,10 @@ struct TelemetryLog {
 struct LogFacts {
     std::map<std::string, std::string> information;  ///< ULog's, by key: "sys_uuid"
     std::map<std::string, double> parameters;
-    std::vector<std::string> texts;  ///< messages to the user, at most a thousand
-    std::size_t dropouts = 0;        ///< times at which ULog's logger lost data
-    double dropout_s = 0.0;          ///< their total duration
+    std::vector<std::string> texts;       ///< messages to the user, at most a thousand
+    std::size_t dropouts = 0;             ///< times at which ULog's logger lost data
+    double dropout_s = 0.0;               ///< their total duration
+    std::vector<std::string> notes = {};  ///< of the reader, for the user
 };
 
 /// A message of a log: its name, its number in the log, and its fields.

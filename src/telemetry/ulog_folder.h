@@ -15,7 +15,7 @@ namespace flightwatt::telemetry {
 /// battery in its folder, else of an altitude. std::nullopt for other files.
 std::optional<std::filesystem::path> find_ulog_tables(const std::filesystem::path& file);
 
-/// Joins the tables of the requested topics of the log that a file represents into one text for read_autopilot_log().
+/// Joins the tables of the requested topics of the log that a file represents into one text for read_autopilot_logs().
 /// Throws InputError for a table that cannot be read, and for more than `max_bytes`.
 std::string join_ulog_tables(const std::filesystem::path& file, const std::vector<MessageRequest>& wanted,
                              std::size_t max_bytes);

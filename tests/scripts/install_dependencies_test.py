@@ -22,7 +22,7 @@ FAKES = {
         *install*) echo "dlstatus:1:50.5:Retrieving file 1 of 2"; echo "pmstatus:zsh:20.0:Unpacking zsh (amd64)"
                    echo "E: $BROKEN"; [ -z "$BROKEN" ] ;;
         esac""",
-    "npm": 'echo "npm $*" >>"$CALLS"; mkdir -p web/node_modules',
+    "npm": 'echo "npm $*" >>"$CALLS"; mkdir -p "$3/node_modules"',
     "node": "",
     "sudo": 'exec "$@"',
 }
@@ -33,7 +33,7 @@ class InstallDependencies(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        for name in ("scripts/install_dependencies", "web/package-lock.json"):
+        for name in ("scripts/install_dependencies", "web/package-lock.json", "tests/mavlink_peer/package-lock.json"):
             os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
             shutil.copy(os.path.join(ROOT, name), os.path.join(self.folder, name))
         os.mkdir(os.path.join(self.folder, "bin"))
@@ -61,7 +61,7 @@ class InstallDependencies(unittest.TestCase):
         self.assertIn("libceres-dev", packages)
         for other in ("libgtest-dev", "libroscpp-dev", "clang-tidy", "chromium", "snakemake"):
             self.assertNotIn(other, packages)
-        self.assertTrue(calls[-1].startswith("npm ci"), calls[-1])
+        self.assertTrue(calls[-1].startswith("npm ci --prefix web"), calls[-1])
 
     def test_only_missing_packages_are_installed(self):
         _, _, _, ros = self.run_script("--list", "ros")
@@ -71,6 +71,8 @@ class InstallDependencies(unittest.TestCase):
 
     def test_nothing_is_done_where_all_is_there(self):
         _, _, _, packages = self.run_script("--list", "tests", "check")
+        code, calls, _, _ = self.run_script("tests", "check", installed=packages)
+        self.assertEqual((code, [call.split(" --no")[0] for call in calls]), (0, ["npm ci --prefix tests/mavlink_peer"]))
         self.assertEqual(self.run_script("tests", "check", installed=packages)[:3], (0, [], ""))
 
     def test_says_how_many_packages_and_megabytes(self):

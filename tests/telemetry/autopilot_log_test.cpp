@@ -23,7 +23,7 @@ const std::vector<MessageRequest> all_batteries{
 AutopilotLog read_any(const std::string& bytes) {
     const auto format = detect_autopilot_format(bytes);
     if (!format) return {};
-    return read_autopilot_log(bytes, *format, "x.log", all_batteries);
+    return read_autopilot_logs(bytes, *format, "x.log", all_batteries).front();
 }
 
 /// The rows of all tables, as text without their places.

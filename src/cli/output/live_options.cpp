@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <utility>
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::cli {
@@ -63,7 +64,17 @@ void require_messages(const std::filesystem::path& path, const std::string& byte
         lines.push_back(bytes.substr(begin, end - begin));
     if (lines.empty() || std::ranges::any_of(lines, is_message)) return;
     throw InputError({path.string()}, "has no line of a Paparazzi log",
-                     "watch follows Paparazzi's; flightwatt predict takes other logs, with --at");
+                     "watch follows Paparazzi's and a ground station's .tlog; flightwatt predict takes other logs, "
+                     "with --at");
+}
+
+/// Whether the file that is to be followed is a .tlog: by its content, and while it has none by its name.
+bool is_tlog(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return false;  // rejected when it is followed
+    const auto bytes = telemetry::beginning_of_file(path);
+    if (bytes.empty()) return boost::iequals(path.extension().string(), ".tlog");
+    return telemetry::detect_autopilot_format(bytes) == telemetry::AutopilotFormat::tlog;
 }
 
 /// Whether the file that is to be followed is binary: by its content, and while it has none by its name.
@@ -73,7 +84,8 @@ bool is_binary_log(const std::filesystem::path& path) {
     const auto bytes = telemetry::beginning_of_file(path);
     if (telemetry::detect_autopilot_format(bytes))
         throw InputError({path.string()}, "is a log of another autopilot, which is not followed",
-                         "watch follows Paparazzi's; flightwatt predict takes this one, with --at");
+                         "watch follows Paparazzi's and a ground station's .tlog; flightwatt predict takes this one, "
+                         "with --at");
     if (telemetry::detect_binary_framing(bytes)) return true;
     require_messages(path, bytes);
     if (!bytes.empty()) return false;
@@ -83,11 +95,13 @@ bool is_binary_log(const std::filesystem::path& path) {
 
 telemetry::MessageDictionary read_definitions(const SourceArguments& arguments, const std::string& what) {
     if (const auto file = definitions_of_source(arguments)) return telemetry::read_message_dictionary(*file);
-    throw InputError({what}, "Paparazzi's frames need the definitions of their messages",
-                     "give --log FILE.log of the aircraft, or --messages messages.xml; MAVLink is not read");
+    throw InputError(
+        {what}, "Paparazzi's frames need the definitions of their messages",
+        "give --log FILE.log of the aircraft, or --messages messages.xml; of MAVLink: --mavlink udp:14550");
 }
 
 std::unique_ptr<live::MessageSource> follow(const SourceArguments& arguments, const std::string& file) {
+    if (is_tlog(file)) return live::follow_tlog(file);
     if (!is_binary_log(file)) return live::follow_data_file(file);
     return live::follow_binary_log(file, read_definitions(arguments, file));
 }
@@ -177,10 +191,13 @@ double resolve_log_time(const RequestedTime& time, const std::vector<flight::Fli
 }
 
 void add_source_options(Options& options, SourceArguments& arguments) {
-    const std::vector<std::string> links{"udp", "serial", "ivy"};
+    const std::vector<std::string> links{"mavlink", "udp", "serial", "ivy"};
     options.begin_group("Source of telemetry");
     options.add("follow", arguments.follow, {.value = "FILE", .file = FileRole::input, .excludes = links},
-                "a log that is being written: a .data, or a binary one");
+                "a log that is being written: a ground station's .tlog, a .data, or a binary one of Paparazzi");
+    options.add("mavlink", arguments.mavlink, {.value = "LINK", .excludes = {"udp", "serial", "ivy"}},
+                "MAVLink of ArduPilot, PX4 and others: udp:14550 (a port of this machine), udpout:HOST:PORT (a program "
+                "that must hear first: a heartbeat is sent once a second), tcp:HOST:PORT or /dev/ttyUSB0:57600");
     options.add("udp", arguments.udp, {.value = "PORT", .excludes = {"serial", "ivy"}},
                 "Paparazzi's link frames on a UDP port (4242), or at ADDRESS:PORT");
     options.add("serial", arguments.serial, {.value = "DEVICE:BAUD", .excludes = {"ivy"}},
@@ -197,6 +214,10 @@ void add_source_options(Options& options, SourceArguments& arguments) {
     options.begin_group("Options");
 }
 
+bool is_mavlink_source(const SourceArguments& arguments) {
+    return arguments.mavlink || (arguments.follow && is_tlog(*arguments.follow));
+}
+
 std::optional<std::string> definitions_of_source(const SourceArguments& arguments) {
     if (arguments.messages) return arguments.messages;
     if (arguments.log || !arguments.follow) return arguments.log;
@@ -205,18 +226,21 @@ std::optional<std::string> definitions_of_source(const SourceArguments& argument
 }
 
 std::unique_ptr<live::MessageSource> open_source(const StageCall& call, const SourceArguments& arguments) {
-    const auto& [follow_file, udp, serial, ivy, clock_factor, log, messages] = arguments;
-    const bool has_option = follow_file || udp || serial || ivy;
+    const auto& [follow_file, mavlink, udp, serial, ivy, clock_factor, log, messages] = arguments;
+    const bool has_option = follow_file || mavlink || udp || serial || ivy;
     if (!call.inputs.empty() && call.inputs.front() != "-") {
         throw UsageError(
             fmt::format("'{0}': expected - (the standard input); to follow a file: --follow {0}", call.inputs.front()));
     }
     if (call.inputs.empty() != has_option)
         throw UsageError(
-            "expected one source: --follow FILE, --udp PORT, --serial DEVICE:BAUD, --ivy ADDRESS:PORT or - (the "
-            "standard input)");
+            "expected one source: --follow FILE, --mavlink LINK, --udp PORT, --serial DEVICE:BAUD, --ivy ADDRESS:PORT "
+            "or - (the standard input)");
+    if (is_mavlink_source(arguments) && (log || messages))
+        throw UsageError("--log and --messages define Paparazzi's messages: MAVLink's are known");
     const double factor = clock_factor.value_or(1.0);
     if (follow_file) return follow(arguments, *follow_file);
+    if (mavlink) return live::open_mavlink(*mavlink, factor);
     if (ivy) return live::open_ivy_bus(*ivy, factor);
     if (udp) return live::open_udp(*udp, read_definitions(arguments, "--udp " + *udp), factor);
     if (serial) return live::open_serial(*serial, read_definitions(arguments, "--serial " + *serial), factor);

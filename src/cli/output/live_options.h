@@ -50,9 +50,10 @@ void add_time_options(Options& options, RequestedTime& time);
 double resolve_log_time(const RequestedTime& time, const std::vector<flight::FlightSeries>& candidates,
                         std::size_t sortie, const flight::SegmentationOptions& options);
 
-/// --follow, --udp, --serial, --ivy, --clock-factor, --log, --messages.
+/// --follow, --mavlink, --udp, --serial, --ivy, --clock-factor, --log, --messages.
 struct SourceArguments {
     std::optional<std::string> follow;
+    std::optional<std::string> mavlink;
     std::optional<std::string> udp;
     std::optional<std::string> serial;
     std::optional<std::string> ivy;
@@ -62,6 +63,9 @@ struct SourceArguments {
 };
 
 void add_source_options(Options& options, SourceArguments& arguments);
+
+/// Whether the source is MAVLink: a link, or a .tlog that is followed.
+bool is_mavlink_source(const SourceArguments& arguments);
 
 /// The file of definitions: of --messages or --log, or the .log next to the file that is followed.
 std::optional<std::string> definitions_of_source(const SourceArguments& arguments);

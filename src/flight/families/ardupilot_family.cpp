@@ -147,22 +147,6 @@ std::map<std::string, std::string> monitor_kinds(const std::map<std::string, dou
     return kinds;
 }
 
-/// The serial numbers of the packs. Only monitors of smart batteries set them: elsewhere the parameter may be the number
-/// of a place (DroneCAN's battery_id), or of a pack that was changed since.
-std::string pack_serials(const std::map<std::string, double>& parameters) {
-    const std::set<double> smart{5.0, 7.0, 13.0, 14.0, 16.0, 19.0};  // Solo, SMBus, SUI3, SUI6, Maxell, Rotoye
-    constexpr int max_monitors = 9;
-    std::vector<double> serials;
-    for (int number = 1; number <= max_monitors; ++number) {
-        const auto prefix = number == 1 ? std::string("BATT") : fmt::format("BATT{}", number);
-        const auto kind = parameters.find(prefix + "_MONITOR");
-        const auto serial = parameters.find(prefix + "_SERIAL_NUM");
-        if (kind != parameters.end() && serial != parameters.end() && smart.contains(kind->second))
-            serials.push_back(serial->second);
-    }
-    return joined_serials(serials);
-}
-
 /// The kind of vehicle by the number of its software; empty if no parameter states it.
 std::string vehicle_of_parameters(const std::map<std::string, double>& parameters) {
     static const std::map<double, std::string> vehicles{
@@ -173,13 +157,11 @@ std::string vehicle_of_parameters(const std::map<std::string, double>& parameter
 }
 
 void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series) {
-    // "APM:Copter V3.4.4", "ArduCopter V3.6.8", "APMrover2 v2.50"; the serial number of the board is
-    // "00310019 3138510E 35363631"
+    // "APM:Copter V3.4.4", "ArduCopter V3.6.8", "APMrover2 v2.50"
     auto vehicle = found_in_texts(log.facts, "(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
     if (!found_in_texts(log.facts, "APM(rover)").empty()) vehicle = "Rover";
     if (vehicle.empty()) vehicle = vehicle_of_parameters(log.facts.parameters);
-    series.aircraft_id = found_in_texts(log.facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
-    std::ranges::replace(series.aircraft_id, ' ', '-');
+    series.aircraft_id = board_serial(log.facts);
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
     series.monitor_kinds = monitor_kinds(log.facts.parameters);
     series.monitor_capacities_ah = monitor_capacities_ah(log.facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
@@ -195,6 +177,26 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
 }
 
 }  // namespace
+
+std::string board_serial(const telemetry::LogFacts& facts) {
+    auto serial = found_in_texts(facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
+    std::ranges::replace(serial, ' ', '-');
+    return serial;
+}
+
+std::string pack_serials(const std::map<std::string, double>& parameters) {
+    const std::set<double> smart{5.0, 7.0, 13.0, 14.0, 16.0, 19.0};  // Solo, SMBus, SUI3, SUI6, Maxell, Rotoye
+    constexpr int max_monitors = 9;
+    std::vector<double> serials;
+    for (int number = 1; number <= max_monitors; ++number) {
+        const auto prefix = number == 1 ? std::string("BATT") : fmt::format("BATT{}", number);
+        const auto kind = parameters.find(prefix + "_MONITOR");
+        const auto serial = parameters.find(prefix + "_SERIAL_NUM");
+        if (kind != parameters.end() && serial != parameters.end() && smart.contains(kind->second))
+            serials.push_back(serial->second);
+    }
+    return joined_serials(serials);
+}
 
 const LogFamily& ardupilot_family() {
     static const LogFamily family{ardupilot_tracks(),

@@ -169,6 +169,8 @@ double correct_week_rollover(double utc_s) {
 
 double product(const std::vector<double>& values) { return values[0] * values[1]; }
 
+double speed_of(const std::vector<double>& north_east) { return std::hypot(north_east[0], north_east[1]); }
+
 void sort_tracks(std::vector<Track>& tracks) {
     const auto& names = track_names();
     std::ranges::stable_sort(tracks, {},

@@ -61,6 +61,9 @@ struct LogFamily {
 /// Returns the product of two values, such as voltage and current.
 double product(const std::vector<double>& values);
 
+/// Returns the speed of a velocity to the north and east.
+double speed_of(const std::vector<double>& north_east);
+
 /// Returns a receiver's Unix time with 1024 weeks added while it is before 2010, when no such log was written:
 /// receivers whose counter of weeks overflowed are 20 or 39 years late. NaN for a time before the GPS epoch.
 double correct_week_rollover(double utc_s);

@@ -30,7 +30,6 @@ double to_heading(double east, double north) {
     return deg < 0.0 ? deg + turn_deg : deg;
 }
 
-double speed_of(const std::vector<double>& north_east) { return std::hypot(north_east[0], north_east[1]); }
 double course_of(const std::vector<double>& north_east) { return to_heading(north_east[1], north_east[0]); }
 
 double roll_of(const std::vector<double>& q) {

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace flightwatt::live {
 
 void MessageQueue::push(IncomingMessage message) {
@@ -111,6 +113,32 @@ void LinkReader::count_unusable() {
     sink_.count("frames whose length differs from their message's", now.length_mismatches - counted_.length_mismatches);
     sink_.count("bytes between frames", now.skipped_bytes - counted_.skipped_bytes);
     counted_ = now;
+}
+
+void MavlinkReader::push(std::string_view bytes) {
+    decoder_.push(bytes, [this](const telemetry::MavlinkMessageOfVehicle& message) {
+        IncomingMessage incoming;
+        if (message.unix_s) {
+            if (!start_unix_s_) start_unix_s_ = message.unix_s;
+            incoming.time_s = *message.unix_s - *start_unix_s_;
+        }
+        incoming.text = fmt::format("{} {}", message.sender, message.name);
+        incoming.values.assign(message.values.begin(), message.values.end());
+        incoming.packet = message.packet;
+        sink_.push(std::move(incoming));
+    });
+    count_unusable();
+}
+
+void MavlinkReader::restart() {
+    decoder_.restart();
+    count_unusable();
+}
+
+void MavlinkReader::count_unusable() {
+    const auto skipped = decoder_.skipped_bytes();
+    sink_.count("bytes between frames", skipped - std::exchange(skipped_bytes_, skipped));
+    sink_.count("messages lost on the link", vehicles_->take_lost());
 }
 
 }  // namespace flightwatt::live

@@ -2,11 +2,13 @@
 
 #include "live/sources.h"
 #include "telemetry/link_decoder.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -85,8 +87,20 @@ class TextReader {
     LineBuffer buffer_;
 };
 
-/// Decodes the bytes of a link or a binary log.
-class LinkReader {
+/// Turns the bytes of a link into messages.
+class ByteReader {
+  public:
+    virtual ~ByteReader() = default;
+    virtual void push(std::string_view bytes) = 0;
+    /// Ends the stream and begins another one (file replaced, link reopened).
+    virtual void restart() = 0;
+};
+
+/// Makes the reader of a stream: each sender of datagrams has its own, so that damage in one does not affect another.
+using MakeReader = std::function<std::unique_ptr<ByteReader>()>;
+
+/// Decodes the bytes of Paparazzi's link or a binary log.
+class LinkReader final : public ByteReader {
   public:
     using Definitions = std::shared_ptr<const telemetry::MessageDictionary>;
 
@@ -94,11 +108,10 @@ class LinkReader {
     LinkReader(MessageSink& sink, Definitions definitions, std::optional<telemetry::Framing> framing = std::nullopt,
                std::optional<telemetry::LinkVersion> version = std::nullopt);
 
-    void push(std::string_view bytes);
+    void push(std::string_view bytes) override;
     /// Ends the stream.
     void flush();
-    /// Ends the stream and begins another one (file replaced, link reopened).
-    void restart();
+    void restart() override;
 
     const telemetry::LinkCounts& counts() const { return decoder_.counts(); }
 
@@ -111,6 +124,24 @@ class LinkReader {
     std::optional<telemetry::Framing> framing_;
     telemetry::LinkDecoder decoder_;
     telemetry::LinkCounts counted_;
+};
+
+/// Decodes MAVLink of a link, or of a .tlog with its times, in seconds since its first message of a vehicle.
+class MavlinkReader final : public ByteReader {
+  public:
+    MavlinkReader(MessageSink& sink, std::shared_ptr<telemetry::MavlinkVehicles> vehicles, bool is_tlog)
+        : sink_(sink), vehicles_(std::move(vehicles)), decoder_(vehicles_, is_tlog) {}
+    void push(std::string_view bytes) override;
+    void restart() override;
+
+  private:
+    void count_unusable();
+
+    MessageSink& sink_;
+    std::shared_ptr<telemetry::MavlinkVehicles> vehicles_;
+    telemetry::MavlinkDecoder decoder_;
+    std::optional<double> start_unix_s_;
+    std::size_t skipped_bytes_ = 0;
 };
 
 }  // namespace flightwatt::live

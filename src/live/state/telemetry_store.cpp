@@ -13,13 +13,18 @@
 namespace flightwatt::live {
 namespace {
 
+/// Whether a message or field has the motion alone.
+bool is_of_motion(const std::string& name) {
+    static const std::set<std::string> of_motion{"ATTITUDE", "NAVIGATION", "GPS_LLA", "utm_east", "utm_north",
+                                                 "utm_zone", "lat",        "lon",     "east",     "north"};
+    return of_motion.contains(name);
+}
+
 /// The messages and fields that live predictions need.
 std::vector<telemetry::MessageRequest> live_messages(bool motion) {
     static const std::set<std::string> unused{"PPRZ_MODE", "TAKEOFF", "cur_block", "course", "temp", "psi"};
-    static const std::set<std::string> of_motion{"ATTITUDE", "NAVIGATION", "GPS_LLA", "utm_east", "utm_north",
-                                                 "utm_zone", "lat",        "lon",     "east",     "north"};
     const auto is_unused = [&](const std::string& name) {
-        return unused.contains(name) || (!motion && of_motion.contains(name));
+        return unused.contains(name) || (!motion && is_of_motion(name));
     };
     auto messages = flight::flight_messages();
     std::erase_if(messages, [&](const auto& request) { return is_unused(request.message); });
@@ -31,7 +36,7 @@ std::vector<telemetry::MessageRequest> live_messages(bool motion) {
 /// The device that sent a row.
 std::vector<double> device_of(const telemetry::MessageTable& table, std::size_t row) {
     std::vector<double> device;
-    for (const auto* field : {"node_id", "motor_id", "circuit"}) {
+    for (const auto* field : {"node_id", "motor_id", "circuit", "id"}) {
         const auto* column = table.column(field);
         if (column != nullptr && std::isfinite(column->values[row])) device.push_back(column->values[row]);
     }
@@ -59,8 +64,9 @@ std::size_t rows_of(const telemetry::SenderLog& sender) {
 }  // namespace
 
 TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration,
-                               bool motion)
-    : decoder_(configuration, live_messages(motion)) {
+                               bool motion, bool is_mavlink)
+    : motion_(motion), decoder_(configuration, live_messages(motion)) {
+    if (is_mavlink) mavlink_ = flight::mavlink_flight_messages();
     log_.data_file = flight;
     log_.flight = std::move(flight);
     log_.configuration = std::move(configuration);
@@ -69,9 +75,23 @@ TelemetryStore::TelemetryStore(std::string flight, std::optional<telemetry::LogC
     for (auto& aircraft : log_.configuration->aircraft) aircraft.second.block_names.clear();
 }
 
+void TelemetryStore::add_mavlink(double time_s, const std::string& sender, std::string_view message,
+                                 std::span<const double> values) {
+    const auto known = std::ranges::find(mavlink_, message, &telemetry::MessageRequest::message);
+    if (known == mavlink_.end() || values.size() != known->fields.size()) return;
+    telemetry::MessageTable row{known->message, {time_s}, {}};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (motion_ || !is_of_motion(known->fields[i])) row.columns.push_back({known->fields[i], {}, {values[i]}});
+    if (motion_ || !is_of_motion(known->message)) append(sender, row);
+}
+
 void TelemetryStore::add(double time_s, std::string_view message, std::span<const double> values) {
     const auto sender = message.substr(0, message.find(' '));
     message.remove_prefix(std::min(sender.size() + 1, message.size()));
+    if (!mavlink_.empty()) {
+        if (!only_ || sender == *only_) add_mavlink(time_s, std::string(sender), message, values);
+        return;
+    }
     const auto* row = decoder_.decode(time_s, message, values);
     if (row != nullptr && (!only_ || sender == *only_)) append(std::string(sender), *row);
 }
@@ -157,6 +177,13 @@ std::map<std::string, std::size_t> TelemetryStore::skipped() const {
 }
 
 flight::FlightSeries TelemetryStore::series(const std::string& sender) const {
+    if (!mavlink_.empty()) {
+        const auto log = std::ranges::find(log_.senders, sender, &telemetry::SenderLog::id);
+        if (log == log_.senders.end()) return {};
+        auto series = flight::mavlink_series({{log_.data_file, log_.flight, {}, {*log}, {}, {}, 0}, {}, {}});
+        series.aircraft_id = sender;
+        return series;
+    }
     auto series = flight::flight_series(log_, sender);
     series.assumed_definitions = decoder_.assumed_definitions();
     return series;

@@ -22,9 +22,11 @@ class TelemetryStore {
     static constexpr std::size_t max_senders = 8;   ///< senders with stored rows
     static constexpr std::size_t max_devices = 64;  ///< devices of one message
 
-    /// Stores a flight by the definitions of its .log, else by the built-in ones. Without `motion` there are no bank
-    /// angles, which are most frequent, and no positions, which take most time to convert.
-    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool motion = true);
+    /// Stores a flight by the definitions of its .log, else by the built-in ones; or by messages of MAVLink, whose values
+    /// are those of flight::mavlink_flight_messages(). Without `motion` there are no bank angles, which are most
+    /// frequent, and no positions, which take most time to convert.
+    TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool motion = true,
+                   bool is_mavlink = false);
 
     /// Adds a message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
     void add(double time_s, std::string_view message, std::span<const double> values = {});
@@ -55,8 +57,12 @@ class TelemetryStore {
     using TableName = std::pair<std::string, std::string>;  ///< sender, message
 
     void append(const std::string& sender, const telemetry::MessageTable& row);
+    void add_mavlink(double time_s, const std::string& sender, std::string_view message,
+                     std::span<const double> values);
 
     telemetry::TelemetryLog log_;
+    std::vector<telemetry::MessageRequest> mavlink_;  ///< the messages, if they are MAVLink's
+    bool motion_;
     std::optional<std::string> only_;
     telemetry::MessageDecoder decoder_;
     std::map<TableName, Thinning> thinning_;

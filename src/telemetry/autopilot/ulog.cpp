@@ -213,7 +213,8 @@ class UlogReader {
         constexpr std::size_t max_text = 200;
         std::string_view value;
         const auto key = key_and_value(body, value);
-        auto& [information, parameters, texts, dropouts, dropout_s] = rows_.facts();
+        auto& information = rows_.facts().information;
+        auto& parameters = rows_.facts().parameters;
         if (!key || information.size() + parameters.size() >= max_entries) return;
         const auto type = wire_type(key->type);
         const bool is_number = type && key->elements == 1 && value.size() == size_of(*type);

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using units::Quantity;
 
 AutopilotLog read_bytes(const std::string& bytes, const std::vector<MessageRequest>& wanted) {
-    return read_autopilot_log(bytes, detect_autopilot_format(bytes).value(), "x.bin", wanted);
+    return read_autopilot_logs(bytes, detect_autopilot_format(bytes).value(), "x.bin", wanted).front();
 }
 
 std::string fmtu(std::uint8_t type, std::string_view units, std::string_view multipliers) {

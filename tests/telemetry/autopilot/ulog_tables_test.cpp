@@ -46,7 +46,7 @@ TEST(UlogTables, AreReadAsOneLog) {
     const auto file = folder / "log_2_battery_status_0.csv";
     const auto text = join_ulog_tables(file, wanted, 100'000);
     ASSERT_EQ(detect_autopilot_format(text), AutopilotFormat::ulog_tables);
-    const auto read = read_autopilot_log(text, AutopilotFormat::ulog_tables, file, wanted);
+    const auto read = read_autopilot_logs(text, AutopilotFormat::ulog_tables, file, wanted).front();
     EXPECT_EQ(read.log.flight, "log_2");
     const auto& sender = read.log.senders.at(0);
     const auto* battery = sender.table("battery_status");
@@ -66,7 +66,7 @@ TEST(UlogTables, NameTheTableThatIsWrong) {
     test::write_text(folder / "log_2_vehicle_status_0.csv", "timestamp,arming_state\n1100000\n");
     const auto file = folder / "log_2_battery_status_0.csv";
     const auto read = [&] {
-        read_autopilot_log(join_ulog_tables(file, wanted, 100'000), AutopilotFormat::ulog_tables, file, wanted);
+        read_autopilot_logs(join_ulog_tables(file, wanted, 100'000), AutopilotFormat::ulog_tables, file, wanted);
     };
     EXPECT_EQ(test::rejected(read, folder), "log_2_vehicle_status_0.csv:2: 1 cells, expected 2 as in the first line");
     test::write_text(folder / "log_2_vehicle_status_0.csv", "time,arming_state\n1,2\n");

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 const std::vector<MessageRequest> batteries{{"battery_status", {"voltage_v", "multi_id"}}};
 
 AutopilotLog read_log(const std::string& bytes, const std::vector<MessageRequest>& wanted = batteries) {
-    return read_autopilot_log(bytes, AutopilotFormat::ulog, "x.ulg", wanted);
+    return read_autopilot_logs(bytes, AutopilotFormat::ulog, "x.ulg", wanted).front();
 }
 
 TEST(Ulog, TopicsHaveInstances) {

@@ -1,0 +1,215 @@
+#include "flight/families/mavlink_family.h"
+
+#include "base/number.h"
+#include "base/units.h"
+#include "flight/families/ardupilot_family.h"
+#include "flight/families/derived_tracks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+/// Where MAVLink has the quantities of a flight (docs/formats.md).
+namespace flightwatt::flight {
+namespace {
+
+constexpr double unknown_16_bit = 65535.0;
+constexpr double unknown = -1.0;
+constexpr std::size_t cells = 10;
+constexpr std::size_t further_cells = 4;
+
+/// The voltages of the cells; an autopilot that knows none of them puts the pack's into the first ones.
+std::vector<FamilySource> cell_voltages() {
+    std::vector<FamilySource> sources;
+    static const auto names = [] {
+        std::vector<std::string> all;
+        for (std::size_t i = 0; i < cells; ++i) all.push_back(fmt::format("voltages[{}]", i));
+        for (std::size_t i = 0; i < further_cells; ++i) all.push_back(fmt::format("voltages_ext[{}]", i));
+        return all;
+    }();
+    for (std::size_t i = 0; i < names.size(); ++i)
+        sources.push_back({names[i].c_str(), "mV", nullptr, i < cells ? unknown_16_bit : 0.0});
+    return sources;
+}
+
+double sum_of_cells(const std::vector<double>& cells_v) {
+    double sum_v = 0.0;
+    for (std::size_t i = 0; i < cells + further_cells; ++i) sum_v += std::isnan(cells_v[i]) ? 0.0 : cells_v[i];
+    return sum_v > 0.0 ? sum_v : no_value;
+}
+
+double power_of_cells(const std::vector<double>& cells_and_current) {
+    return sum_of_cells(cells_and_current) * cells_and_current.back();
+}
+
+/// WIND states where the wind comes from.
+double wind_east(const std::vector<double>& direction_and_speed) {
+    return -direction_and_speed[1] * std::sin(direction_and_speed[0] / units::degree_per_rad);
+}
+double wind_north(const std::vector<double>& direction_and_speed) {
+    return -direction_and_speed[1] * std::cos(direction_and_speed[0] / units::degree_per_rad);
+}
+
+double is_armed_mode(const std::vector<double>& base_mode) {
+    constexpr unsigned armed_flag = 128;
+    return (static_cast<unsigned>(base_mode[0]) & armed_flag) != 0 ? 1.0 : 0.0;
+}
+
+/// 0 is undefined, 1 on ground, 2 to 4 in the air, taking off and landing.
+double is_landed(const std::vector<double>& state) { return state[0] == 0.0 ? no_value : state[0] == 1.0 ? 1.0 : 0.0; }
+
+double if_known_time(const std::vector<double>& utc_s) { return utc_s[0] > 0.0 ? utc_s[0] : no_value; }
+
+std::vector<FamilyTrack> mavlink_tracks() {
+    constexpr auto mean = Merge::mean;
+    constexpr auto latest = Merge::latest;
+    const FamilySource pack_current{"current_battery", "cA", nullptr, unknown};
+    const FamilySource pack_voltage{"voltage_battery", "mV", nullptr, unknown_16_bit};
+    auto cells_and_current = cell_voltages();
+    cells_and_current.push_back(pack_current);
+    const std::vector<FamilySource> wind{{"direction"}, {"speed"}};
+    return {
+        {"power_w", "BATTERY_STATUS", cells_and_current, mean, power_of_cells, nullptr,
+         "BATTERY_STATUS.voltages * BATTERY_STATUS.current_battery"},
+        {"voltage_v", "BATTERY_STATUS", cell_voltages(), mean, sum_of_cells, nullptr, "BATTERY_STATUS.voltages"},
+        {"current_a", "BATTERY_STATUS", {pack_current}},
+        {"charge_ah", "BATTERY_STATUS", {{"current_consumed", "mAh", nullptr, unknown}}, latest},
+        {"energy_wh", "BATTERY_STATUS", {{"energy_consumed", "100J", nullptr, unknown}}, latest},
+        {"power_w", "SYS_STATUS", {pack_voltage, pack_current}, mean, product},
+        {"voltage_v", "SYS_STATUS", {pack_voltage}},
+        {"current_a", "SYS_STATUS", {pack_current}},
+        {"altitude_m", "GLOBAL_POSITION_INT", {{"relative_alt", "mm"}}},
+        {"altitude_m", "VFR_HUD", {{"alt", "m"}}},
+        {"altitude_m", "GPS_RAW_INT", {{"alt", "mm"}}},
+        {"ground_speed_m_per_s", "GLOBAL_POSITION_INT", {{"vx", "cm/s"}, {"vy", "cm/s"}}, mean, speed_of},
+        {"ground_speed_m_per_s", "VFR_HUD", {{"groundspeed", "m/s"}}},
+        {"airspeed_m_per_s", "VFR_HUD", {{"airspeed", "m/s"}}},
+        {"wind_east_m_per_s", "WIND", wind, mean, wind_east},
+        {"wind_east_m_per_s", "WIND_COV", {{"wind_y", "m/s"}}},
+        {"wind_north_m_per_s", "WIND", wind, mean, wind_north},
+        {"wind_north_m_per_s", "WIND_COV", {{"wind_x", "m/s"}}},
+        {"latitude_deg", "GPS_RAW_INT", {{"lat", "1e7deg"}}, latest},
+        {"latitude_deg", "GLOBAL_POSITION_INT", {{"lat", "1e7deg"}}, latest},
+        {"longitude_deg", "GPS_RAW_INT", {{"lon", "1e7deg"}}, latest},
+        {"longitude_deg", "GLOBAL_POSITION_INT", {{"lon", "1e7deg"}}, latest},
+        {"heading_deg", "GLOBAL_POSITION_INT", {{"hdg", "0.01deg", nullptr, unknown_16_bit}}, latest},
+        {"course_deg", "GPS_RAW_INT", {{"cog", "0.01deg", nullptr, unknown_16_bit}}, latest},
+        {"climb_m_per_s", "VFR_HUD", {{"climb", "m/s"}}},
+        {"climb_m_per_s", "GLOBAL_POSITION_INT", {{"vz", "-1cm/s"}}},
+        {"roll_deg", "ATTITUDE", {{"roll", "rad"}}, latest},
+        {"throttle_percent", "VFR_HUD", {{"throttle", "%"}}},
+        {"mode", "HEARTBEAT", {{"custom_mode"}}, latest},
+        {"armed", "HEARTBEAT", {{"base_mode"}}, latest, is_armed_mode},
+        {"landed", "EXTENDED_SYS_STATE", {{"landed_state"}}, latest, is_landed},
+        {"fix", "GPS_RAW_INT", {{"fix_type"}}, latest},
+        {utc_track, "SYSTEM_TIME", {{"time_unix_usec", "1e-6s"}}, latest, if_known_time},
+    };
+}
+
+/// The first value of a field of the heartbeat; NaN without one.
+double of_heartbeat(const telemetry::AutopilotLog& log, const char* field) {
+    const auto* heartbeat = log.log.senders.front().table("HEARTBEAT");
+    const auto* column = heartbeat == nullptr ? nullptr : heartbeat->column(field);
+    return column == nullptr || column->values.empty() ? no_value : column->values.front();
+}
+
+struct VehicleKind {
+    const char* name;      ///< behind "Ardu"
+    const char* firmware;  ///< as FlightInfo::firmware
+};
+
+VehicleKind kind_of(double type) {
+    constexpr std::array rotorcraft{2.0, 3.0, 4.0, 13.0, 14.0, 15.0, 29.0, 35.0, 43.0};
+    constexpr double fixed_wing = 1.0;
+    constexpr double first_vtol = 19.0;
+    constexpr double last_vtol = 25.0;
+    constexpr double ground_rover = 10.0;
+    constexpr double boat = 11.0;
+    constexpr double submarine = 12.0;
+    if (std::ranges::find(rotorcraft, type) != rotorcraft.end()) return {"Copter", "rotorcraft"};
+    if (type == fixed_wing) return {"Plane", "fixedwing"};
+    if (type >= first_vtol && type <= last_vtol) return {"Plane", ""};
+    if (type == ground_rover || type == boat) return {"Rover", "rover"};
+    return {type == submarine ? "Sub" : "", ""};
+}
+
+void describe_mavlink(const telemetry::AutopilotLog& log, FlightSeries& series) {
+    constexpr double ardupilot = 3.0;
+    constexpr double px4 = 12.0;
+    const auto& facts = log.facts;
+    const double autopilot = of_heartbeat(log, "autopilot");
+    const auto kind = kind_of(of_heartbeat(log, "type"));
+    series.aircraft_id = board_serial(facts);
+    if (const auto uid = facts.information.find("uid"); series.aircraft_id.empty() && uid != facts.information.end())
+        series.aircraft_id = uid->second;
+    if (series.aircraft_id.empty()) series.aircraft_id = log.log.senders.front().id;
+    series.aircraft_name = autopilot == ardupilot ? fmt::format("Ardu{}", *kind.name != '\0' ? kind.name : "Pilot")
+                           : autopilot == px4     ? "PX4"
+                                                  : "MAVLink";
+    const auto is_simulation = [](const auto& of) { return of.name == "SIMSTATE"; };
+    if (std::ranges::any_of(log.messages, is_simulation)) series.aircraft_name += " SITL";
+    series.firmware = kind.firmware;
+    if (const auto start = facts.information.find("start_unix_s"); start != facts.information.end())
+        series.start_clock_s = parse_number(start->second);
+    series.monitor_capacities_ah = monitor_capacities_ah(facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
+    series.monitor_capacities_ah.merge(
+        monitor_capacities_ah(facts.parameters, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY"));
+    series.pack_serial = pack_serials(facts.parameters);
+    series.notes.insert(series.notes.end(), facts.notes.begin(), facts.notes.end());
+}
+
+bool has_values(const telemetry::MessageTable& table, const char* field, double absent) {
+    const auto* column = table.column(field);
+    return column != nullptr && std::ranges::any_of(column->values, [&](double value) {
+               return std::isfinite(value) && value != absent && value != 0.0;
+           });
+}
+
+/// Whether the status has an airspeed sensor (differential pressure) that is enabled and in health.
+bool has_airspeed_sensor(const telemetry::MessageTable& status) {
+    constexpr std::uint32_t differential_pressure = 1U << 4U;
+    const auto* enabled = status.column("onboard_control_sensors_enabled");
+    const auto* health = status.column("onboard_control_sensors_health");
+    for (std::size_t i = 0; enabled != nullptr && health != nullptr && i < enabled->values.size(); ++i) {
+        const auto both =
+            static_cast<std::uint32_t>(enabled->values[i]) & static_cast<std::uint32_t>(health->values[i]);
+        if ((both & differential_pressure) != 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+const LogFamily& mavlink_family() {
+    static const LogFamily family{
+        mavlink_tracks(),
+        {{"BATTERY_STATUS", "id"}, {"GPS_RAW_INT", nullptr, "fix_type", min_fix}},
+        describe_mavlink,
+        {{"SYS_STATUS", {"onboard_control_sensors_enabled", "onboard_control_sensors_health"}},
+         {"HEARTBEAT", {"type", "autopilot"}}}};
+    return family;
+}
+
+telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
+    auto& tables = log.log.senders.front().tables;
+    const auto find = [&](const char* name) {
+        return std::ranges::find(tables, name, &telemetry::MessageTable::message);
+    };
+    const auto battery = find("BATTERY_STATUS");
+    const auto status = find("SYS_STATUS");
+    const auto hud = find("VFR_HUD");
+    if (hud != tables.end() && (status == tables.end() || !has_airspeed_sensor(*status)))
+        std::erase_if(hud->columns, [](const telemetry::Column& column) { return column.field == "airspeed"; });
+    const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
+                             has_values(*battery, "current_battery", unknown);
+    if (has_battery && status != tables.end()) tables.erase(status);
+    return log;
+}
+
+}  // namespace flightwatt::flight

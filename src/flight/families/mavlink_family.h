@@ -1,0 +1,14 @@
+#pragma once
+
+#include "flight/families/log_family.h"
+
+namespace flightwatt::flight {
+
+/// Returns the messages and fields of MAVLink that have the quantities of a flight.
+const LogFamily& mavlink_family();
+
+/// Returns the log without what repeats or guesses: SYS_STATUS's battery where BATTERY_STATUS has its voltage and current,
+/// and VFR_HUD's airspeed if the autopilot has no enabled airspeed sensor, as it then states an estimate.
+telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log);
+
+}  // namespace flightwatt::flight

@@ -1,0 +1,217 @@
+#include "telemetry/mavlink/tlog.h"
+
+#include "base/error.h"
+#include "base/units.h"
+#include "telemetry/binary/wire_value.h"
+#include "telemetry/mavlink/entries.h"
+#include "telemetry/mavlink/vehicles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace flightwatt::telemetry {
+namespace {
+
+using Entry = TlogEntry;
+
+constexpr double us_per_s = 1e6;
+
+/// Calls on_entry(Entry, offset) for each packet, and on_skip(offset, bytes) for damage between them.
+template <typename OnEntry, typename OnSkip>
+void for_each_entry(std::string_view bytes, const OnEntry& on_entry, const OnSkip& on_skip) {
+    std::size_t damage = 0;
+    for (std::size_t at = 0; at < bytes.size();) {
+        const auto entry = read_tlog_entry(bytes.substr(at));
+        if (!entry) {
+            ++damage;
+            ++at;
+            continue;
+        }
+        if (damage > 0) on_skip(at - damage, damage);
+        damage = 0;
+        on_entry(*entry, at);
+        at += tlog_time_bytes + entry->frame.bytes;
+    }
+    if (damage > 0) on_skip(bytes.size() - damage, damage);
+}
+
+/// The component that flies each system. Without its heartbeat it is the first one that states a position or a battery.
+struct Census {
+    std::map<int, int> autopilots;
+    std::map<int, int> others;
+    std::set<int> px4 = {};  ///< systems
+    std::uint64_t start_us = 0;
+
+    void add(const Entry& entry) {
+        const auto& frame = entry.frame;
+        if (start_us == 0) start_us = entry.time_us;
+        if (frame.message == nullptr) return;
+        const auto& name = frame.message->layout.name;
+        if (name == "HEARTBEAT" && is_autopilot(frame)) {
+            autopilots.try_emplace(frame.system, frame.component);
+            if (frame.number("autopilot") == autopilot_px4) px4.insert(frame.system);
+        } else if (name == "SYS_STATUS" || name == "GLOBAL_POSITION_INT") {
+            others.try_emplace(frame.system, frame.component);
+        }
+    }
+
+    static constexpr double autopilot_px4 = 12.0;
+};
+
+/// Collects the messages of one vehicle.
+class Vehicle {
+  public:
+    Vehicle(int system, int component, const Census& census, const std::filesystem::path& file,
+            const std::vector<MessageRequest>& wanted)
+        : system_(system),
+          component_(component),
+          is_px4_(census.px4.contains(system)),
+          start_us_(census.start_us),
+          rows_(file, wanted) {
+        rows_.facts().information["start_unix_s"] = fmt::format("{:.6f}", static_cast<double>(start_us_) / us_per_s);
+    }
+
+    void add(const Entry& entry, std::size_t offset) {
+        const auto& frame = entry.frame;
+        if (frame.system != system_ || !is_of_vehicle(frame, component_) || !sequence_.add(frame)) return;
+        auto& layout = layout_of(frame);
+        ++layout.count;
+        if (frame.message == nullptr) return;
+        const auto ticks = static_cast<double>(static_cast<std::int64_t>(entry.time_us - start_us_));
+        const double time_s = ticks / us_per_s;
+        add_facts(frame, time_s);
+        rows_.add(layout, time_s, offset,
+                  [&](std::size_t field) { return layout.fields[field].number(frame.payload); });
+    }
+
+    void skip(std::size_t offset, std::size_t bytes) { rows_.skip(offset, bytes); }
+
+    AutopilotLog take() {
+        for (const auto& [id, layout] : layouts_) rows_.list(layout);
+        if (sequence_.lost() > 0) {
+            const auto all = static_cast<double>(sequence_.lost() + sequence_.received());
+            rows_.facts().notes.push_back(
+                fmt::format("{:.1f} % of the messages of system {} were lost on the link",
+                            units::percent_per_whole * static_cast<double>(sequence_.lost()) / all, system_));
+        }
+        auto log = rows_.take(false);
+        log.log.senders.front().id = fmt::format("{}", system_);
+        return log;
+    }
+
+  private:
+    LoggedMessage& layout_of(const MavlinkFrame& frame) {
+        const auto [found, is_new] = layouts_.try_emplace(frame.id);
+        if (!is_new) return found->second;
+        if (frame.message == nullptr) {
+            found->second.name = fmt::format("MESSAGE_{}", frame.id);
+        } else {
+            found->second = frame.message->layout;
+            rows_.bind(found->second);
+        }
+        return found->second;
+    }
+
+    void add_facts(const MavlinkFrame& frame, double time_s) {
+        const auto& name = frame.message->layout.name;
+        if (name == "PARAM_VALUE") add_parameter(frame);
+        if (name == "STATUSTEXT") add_text(frame);
+        if (name == "AUTOPILOT_VERSION") add_version(frame);
+        if (name == "SYSTEM_TIME" || name == "GLOBAL_POSITION_INT" || name == "ATTITUDE")
+            note_restart(frame.number("time_boot_ms") / 1e3, time_s);
+    }
+
+    /// PX4 sends the bytes of a whole number in place of a float, others its value.
+    void add_parameter(const MavlinkFrame& frame) {
+        constexpr double last_whole_type = 6.0;  // int32
+        double value = frame.number("param_value");
+        if (is_px4_ && frame.number("param_type") <= last_whole_type)
+            value = wire_number<std::int32_t>(frame.payload.data());
+        if (!std::isnan(value)) rows_.facts().parameters[frame.text("param_id")] = value;
+    }
+
+    /// A long text comes in parts of 50 bytes with a common id.
+    void add_text(const MavlinkFrame& frame) {
+        constexpr std::size_t max_texts = 1000;
+        auto& texts = rows_.facts().texts;
+        const double id = frame.number("id");
+        if (id > 0.0 && frame.number("chunk_seq") > 0.0 && id == text_id_ && !texts.empty())
+            texts.back() += frame.text("text");
+        else if (texts.size() < max_texts)
+            texts.push_back(frame.text("text"));
+        text_id_ = id;
+    }
+
+    void add_version(const MavlinkFrame& frame) {
+        const auto uid = wire_number<std::uint64_t>(frame.payload.data() + sizeof(std::uint64_t));
+        if (uid != 0) rows_.facts().information["uid"] = fmt::format("{:016X}", uid);
+    }
+
+    void note_restart(double boot_s, double time_s) {
+        constexpr double restart_s = 2.0;  // a late packet is not
+        if (boot_s < boot_s_ - restart_s && rows_.facts().notes.size() < 10)
+            rows_.facts().notes.push_back(fmt::format("the autopilot started anew at {:.1f} s", time_s));
+        boot_s_ = boot_s;
+    }
+
+    int system_;
+    int component_;
+    bool is_px4_;
+    std::uint64_t start_us_;
+    RowCollector rows_;
+    MavlinkSequence sequence_;
+    std::map<std::uint32_t, LoggedMessage> layouts_;
+    double boot_s_ = 0.0;
+    double text_id_ = 0.0;
+};
+
+/// The vehicles of a log; those without a heartbeat only if no system has one.
+std::vector<Vehicle> vehicles_of(const Census& census, const std::filesystem::path& file,
+                                 const std::vector<MessageRequest>& wanted) {
+    std::vector<Vehicle> vehicles;
+    for (const auto& [system, component] : census.autopilots.empty() ? census.others : census.autopilots)
+        vehicles.emplace_back(system, component, census, file, wanted);
+    return vehicles;
+}
+
+}  // namespace
+
+bool is_tlog(std::string_view bytes) {
+    constexpr std::size_t max_damage = 1024;
+    for (std::size_t at = 0; at < std::min(bytes.size(), max_damage); ++at) {
+        const auto entry = read_tlog_entry(bytes.substr(at));
+        if (entry && (entry->frame.message != nullptr || at == 0)) return true;
+    }
+    return false;
+}
+
+std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesystem::path& file,
+                                    const std::vector<MessageRequest>& wanted) {
+    Census census;
+    for_each_entry(
+        bytes, [&](const Entry& entry, std::size_t) { census.add(entry); }, [](std::size_t, std::size_t) {});
+    auto vehicles = vehicles_of(census, file, wanted);
+    if (vehicles.empty()) {
+        throw InputError({file.string()}, "has MAVLink, but no messages of a vehicle",
+                         "expected heartbeats of an autopilot: was the recording made while it was connected?");
+    }
+    for_each_entry(
+        bytes,
+        [&](const Entry& entry, std::size_t offset) {
+            for (auto& vehicle : vehicles) vehicle.add(entry, offset);
+        },
+        [&](std::size_t offset, std::size_t skipped) {
+            for (auto& vehicle : vehicles) vehicle.skip(offset, skipped);
+        });
+    std::vector<AutopilotLog> logs;
+    for (auto& vehicle : vehicles) logs.push_back(vehicle.take());
+    return logs;
+}
+
+}  // namespace flightwatt::telemetry

@@ -1,0 +1,20 @@
+#include "telemetry/mavlink/vehicles.h"
+
+#include <set>
+
+namespace flightwatt::telemetry {
+
+bool is_autopilot(const MavlinkFrame& heartbeat) {
+    constexpr double no_autopilot = 8.0;
+    const std::set<double> others{6.0, 18.0, 26.0, 27.0, 30.0};  // ground station, computer, gimbal, ADS-B, camera
+    return heartbeat.number("autopilot") != no_autopilot && !others.contains(heartbeat.number("type"));
+}
+
+bool is_of_vehicle(const MavlinkFrame& frame, int component) {
+    constexpr int first_battery = 180;
+    constexpr int last_battery = 181;
+    const bool is_battery = frame.component >= first_battery && frame.component <= last_battery;
+    return frame.component == component || (is_battery && frame.id == mavlink_message("BATTERY_STATUS").id);
+}
+
+}  // namespace flightwatt::telemetry

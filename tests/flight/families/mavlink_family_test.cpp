@@ -1,0 +1,108 @@
+#include "flight/families/mavlink_family.h"
+
+#include "flight/load_flight.h"
+#include "flight/phase_statistics.h"
+#include "flight/select.h"
+#include "helpers/mavlink_packets.h"
+#include "helpers/rejected.h"
+#include "helpers/test_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::flight {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+
+std::filesystem::path written(const std::string& bytes) {
+    return test::write_text(test::scratch_dir() / "flight.tlog", bytes);
+}
+
+/// Two minutes of messages that `add(time_s)` returns each second, after heartbeats.
+template <typename Add>
+FlightSeries series_of(test::MavlinkSender& vehicle, const Add& add) {
+    std::string log;
+    for (int i = 0; i < 120; ++i) {
+        log += test::tlog_entry(i, vehicle.heartbeat());
+        for (const auto& packet : add(i)) log += test::tlog_entry(i, packet);
+    }
+    return read_candidates(FlightFile(written(log)), std::nullopt).front();
+}
+
+std::vector<std::string> sources_of(const FlightSeries& series, const std::string& name) {
+    std::vector<std::string> sources;
+    for (const auto& track : series.tracks)
+        if (track.name == name) sources.push_back(track.source);
+    return sources;
+}
+
+TEST(MavlinkFamily, HasThePhasesAndEnergyOfAFlight) {
+    const auto flight = load_flight(written(test::tlog_of_flight()));
+    ASSERT_EQ(flight.phases.sorties.size(), 1U);
+    const auto& phases = flight.phases.sorties.front();
+    EXPECT_NEAR(phases.start_s(), 30.0, 1.0);
+    EXPECT_NEAR(phases.end_s(), 270.0, 1.0);
+    EXPECT_EQ(flight.series.aircraft_name, "ArduCopter");
+    EXPECT_EQ(flight.series.firmware, "rotorcraft");
+    EXPECT_NEAR(value_at(flight.data.power_w, 100.0), 237.0, 1e-9);
+    EXPECT_NEAR(flight.series.start_clock_s.value(), 1.78e9, 1e-3);
+}
+
+TEST(MavlinkFamily, AddsTheVoltagesOfCellsThatAreKnown) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int i) {
+        return std::vector{vehicle.battery({4'000, 3'900, 4'100}, 1'000, 10 * i), vehicle.status(11'000, 900)};
+    });
+    const auto data = select_tracks(series);
+    EXPECT_NEAR(data.voltage_v.value.front(), 12.0, 1e-9);
+    EXPECT_NEAR(data.power_w.value.front(), 120.0, 1e-9);
+    EXPECT_THAT(sources_of(series, "charge_ah"), testing::ElementsAre("BATTERY_STATUS.current_consumed"));
+}
+
+TEST(MavlinkFamily, TakesTheStatusWhereTheBatteryHasNoCurrent) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int) {
+        return std::vector{vehicle.battery({4'000}, -1, -1), vehicle.status(11'000, 900)};
+    });
+    EXPECT_NEAR(select_tracks(series).power_w.value.front(), 99.0, 1e-9);
+}
+
+TEST(MavlinkFamily, HasNoPowerWhereTheCurrentIsUnknown) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int) { return std::vector{vehicle.status(11'000, -1)}; });
+    EXPECT_TRUE(select_tracks(series).power_w.empty());
+    EXPECT_FALSE(select_tracks(series).voltage_v.empty());
+}
+
+// Without a sensor ArduPilot states an estimate, or the speed over ground, in the same field.
+TEST(MavlinkFamily, HasAnAirspeedOnlyWithItsSensor) {
+    for (const std::uint32_t sensors : {0U, 16U}) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            return std::vector{vehicle.status(11'000, 900, sensors),
+                               vehicle.hud(13.0F + 0.1F * static_cast<float>(i), 5.0F, 40)};
+        });
+        EXPECT_EQ(sources_of(series, "airspeed_m_per_s").size(), sensors == 0U ? 0U : 1U);
+    }
+}
+
+TEST(MavlinkFamily, ReadsTheCapacityOfThePack) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int) {
+        return std::vector{vehicle.status(11'000, 900), vehicle.parameter("BATT_CAPACITY", 5200.0F)};
+    });
+    EXPECT_NEAR(series.monitor_capacities_ah.at("0"), 5.2, 1e-9);
+}
+
+TEST(MavlinkFamily, AsksWhichOfTwoVehiclesThatFlew) {
+    const auto log = test::tlog_of_flight({1, 1}) + test::tlog_of_flight({2, 1});
+    EXPECT_THAT(test::rejected([&] { load_flight(written(log)); }), HasSubstr("--aircraft"));
+    LoadOptions options;
+    options.aircraft = "ArduCopter 2";
+    EXPECT_EQ(load_flight(written(log), options).series.aircraft_id, "2");
+}
+
+}  // namespace
+}  // namespace flightwatt::flight

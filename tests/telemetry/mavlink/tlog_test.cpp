@@ -1,0 +1,136 @@
+#include "telemetry/mavlink/tlog.h"
+
+#include "helpers/mavlink_packets.h"
+#include "helpers/rejected.h"
+
+#include <bit>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::telemetry {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<MessageRequest>& status_and_hud() {
+    static const std::vector<MessageRequest> wanted{{"SYS_STATUS", {"voltage_battery"}}, {"VFR_HUD", {"alt"}}};
+    return wanted;
+}
+
+std::vector<AutopilotLog> read(const std::string& bytes) { return read_tlog(bytes, "x.tlog", status_and_hud()); }
+
+TEST(Tlog, HasTheRowsOfTheVehicleAtTheTimesOfReception) {
+    test::MavlinkSender vehicle;
+    test::MavlinkSender station{255, 190};
+    const auto logs =
+        read(test::tlog_entry(5.0, station.heartbeat(6, 8)) + test::tlog_entry(5.5, vehicle.heartbeat()) +
+             test::tlog_entry(6.0, vehicle.status(15'800, 0)) + test::tlog_entry(6.1, station.status(1'000, 0)) +
+             test::tlog_entry(7.5, vehicle.status(15'700, 0)));
+    ASSERT_EQ(logs.size(), 1U);
+    const auto& sender = logs.front().log.senders.front();
+    EXPECT_EQ(sender.id, "1");
+    EXPECT_THAT(sender.table("SYS_STATUS")->time_s, ElementsAre(1.0, 2.5));
+    EXPECT_THAT(sender.table("SYS_STATUS")->column("voltage_battery")->values, ElementsAre(15'800.0, 15'700.0));
+    EXPECT_EQ(sender.table("VFR_HUD"), nullptr);
+    EXPECT_EQ(logs.front().facts.information.at("start_unix_s"), "1780000005.000000");
+}
+
+TEST(Tlog, KeepsVehiclesApart) {
+    test::MavlinkSender first{1, 1};
+    test::MavlinkSender second{42, 1};
+    std::string log;
+    for (int i = 0; i < 20; ++i)
+        log += test::tlog_entry(i, first.heartbeat()) + test::tlog_entry(i, second.heartbeat(1, 12)) +
+               test::tlog_entry(i, first.status(15'800, 0)) + test::tlog_entry(i, second.status(11'100, 0));
+    const auto logs = read(log);
+    ASSERT_EQ(logs.size(), 2U);
+    for (const auto& [vehicle, voltage_mv] : {std::pair(0, 15'800.0), {1, 11'100.0}}) {
+        const auto* status = logs[static_cast<std::size_t>(vehicle)].log.senders.front().table("SYS_STATUS");
+        EXPECT_THAT(status->column("voltage_battery")->values, testing::Each(voltage_mv));
+        EXPECT_EQ(status->time_s.size(), 20U);
+    }
+    EXPECT_EQ(logs.back().log.senders.front().id, "42");
+}
+
+TEST(Tlog, LeavesOtherComponentsOfTheVehicleOutExceptItsBattery) {
+    test::MavlinkSender autopilot{1, 1};
+    test::MavlinkSender camera{1, 100};
+    test::MavlinkSender pack{1, 180};
+    const auto log = test::tlog_entry(0, camera.heartbeat(30, 8)) + test::tlog_entry(0, autopilot.heartbeat()) +
+                     test::tlog_entry(1, camera.status(5'000, 0)) + test::tlog_entry(1, autopilot.status(15'800, 0)) +
+                     test::tlog_entry(2, pack.battery({4'000, 4'000}, 100, 5)) +
+                     test::tlog_entry(3, pack.status(9'000, 0));
+    const auto logs = read_tlog(log, "x.tlog", {{"SYS_STATUS", {"voltage_battery"}}, {"BATTERY_STATUS", {"id"}}});
+    const auto& sender = logs.front().log.senders.front();
+    EXPECT_THAT(sender.table("SYS_STATUS")->column("voltage_battery")->values, ElementsAre(15'800.0));
+    EXPECT_EQ(sender.table("BATTERY_STATUS")->time_s.size(), 1U);
+}
+
+TEST(Tlog, CountsDamageAndContinuesBehindIt) {
+    test::MavlinkSender vehicle;
+    std::string log = "damaged beginning";
+    for (int i = 0; i < 30; ++i) {
+        log += test::tlog_entry(i, vehicle.heartbeat()) + test::tlog_entry(i, vehicle.status(15'800, 0));
+        if (i == 10) log += std::string(40, '\xFD');
+    }
+    log.resize(log.size() - 5);
+    ASSERT_TRUE(is_tlog(log));
+    const auto logs = read(log);
+    const auto& read_log = logs.front().log;
+    EXPECT_EQ(read_log.senders.front().table("SYS_STATUS")->time_s.size(), 29U);
+    ASSERT_EQ(read_log.skipped.size(), 1U);
+    EXPECT_EQ(read_log.skipped.front().reason, "damaged or cut off");
+}
+
+TEST(Tlog, StatesLostMessagesAndARestartOfTheAutopilot) {
+    test::MavlinkSender vehicle;
+    std::string log = test::tlog_entry(0, vehicle.heartbeat());
+    for (int i = 0; i < 100; ++i) {
+        const auto packet = vehicle.position(i < 50 ? 100 + i : i - 50, 3.0);
+        if (i % 4 != 3) log += test::tlog_entry(i, packet);
+    }
+    const auto notes = read(log).front().facts.notes;
+    EXPECT_THAT(notes, Contains(HasSubstr("the autopilot started anew at 50.0 s")));
+    EXPECT_THAT(notes, Contains(HasSubstr("24.0 % of the messages of system 1 were lost on the link")));
+}
+
+TEST(Tlog, ReadsParametersAndTextsInParts) {
+    test::MavlinkSender vehicle;
+    const auto part = [&](char number, const std::string& text) {
+        return vehicle.packet(253, '\6' + test::padded(text, 50) + "\x07" + std::string{'\0', number});
+    };
+    const auto log = test::tlog_entry(0, vehicle.heartbeat()) +
+                     test::tlog_entry(1, vehicle.parameter("BATT_CAPACITY", 5200.0F)) +
+                     test::tlog_entry(2, part(0, std::string(50, 'a'))) + test::tlog_entry(2, part(1, "b")) +
+                     test::tlog_entry(3, vehicle.status(15'800, 0));
+    const auto facts = read(log).front().facts;
+    EXPECT_EQ(facts.parameters.at("BATT_CAPACITY"), 5200.0);
+    EXPECT_THAT(facts.texts, ElementsAre(std::string(50, 'a') + "b"));
+}
+
+TEST(Tlog, ReadsWholeParametersOfPx4ByTheirBytes) {
+    test::MavlinkSender vehicle;
+    const auto bits = std::bit_cast<float>(std::int32_t{4});
+    const auto log = test::tlog_entry(0, vehicle.heartbeat(2, 12)) +
+                     test::tlog_entry(1, vehicle.parameter("BAT1_N_CELLS", bits, 6)) +
+                     test::tlog_entry(2, vehicle.status(15'800, 0));
+    EXPECT_EQ(read(log).front().facts.parameters.at("BAT1_N_CELLS"), 4.0);
+}
+
+TEST(Tlog, RefusesALogWithoutAVehicle) {
+    test::MavlinkSender station{255, 190};
+    EXPECT_THAT(test::rejected([&] { read(test::tlog_entry(0, station.heartbeat(6, 8))); }),
+                HasSubstr("x.tlog: has MAVLink, but no messages of a vehicle"));
+}
+
+TEST(Tlog, IsNotFoundInOtherFiles) {
+    EXPECT_FALSE(is_tlog(""));
+    EXPECT_FALSE(is_tlog(test::dataflash_log(10)));
+    EXPECT_FALSE(is_tlog(test::MavlinkSender{}.heartbeat()));  // without a time
+}
+
+}  // namespace
+}  // namespace flightwatt::telemetry
