@@ -86,7 +86,7 @@ struct RemainingCruise {
 };
 
 /// Correlations between flights of the phases' mean powers; 0 of two flights or fewer. Shrunk as if three more flights
-/// had shown none (docs/methods.md, Eq. 19a).
+/// had shown none (docs/methods.md, Eq. 20a).
 using PhaseCorrelations = flight::PerPhase<flight::PerPhase<double>>;
 PhaseCorrelations correlate_phases(std::span<const flight::PerPhase<std::optional<double>>> mean_powers_w);
 

@@ -24,6 +24,10 @@ std::vector<std::string> words_in_code(const std::string& text) {
     return matches_of(text, code);
 }
 
+std::vector<std::string> split(const std::string& text, const std::regex& separator) {
+    return {std::sregex_token_iterator(text.begin(), text.end(), separator, -1), std::sregex_token_iterator()};
+}
+
 std::size_t characters_of(const std::string& line) {
     return static_cast<std::size_t>(std::count_if(
         line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -69,6 +73,7 @@ class Reader {
         if (line.starts_with("```")) return fence(line);
         if (in_fence_) {
             if (example_ != nullptr) example_->text += line + "\n";
+            if (in_key_block_) block_row(line);
             return;
         }
         if (line.starts_with("#")) return heading(line);
@@ -83,7 +88,10 @@ class Reader {
     void fence(const std::string& line) {
         in_fence_ = !in_fence_;
         example_ = nullptr;
-        const auto blank = line.find(' ');
+        is_column_ = line == "```text columns";
+        in_key_block_ = line == "```text keys" || is_column_;
+        parents_.clear();
+        const auto blank = in_key_block_ ? std::string::npos : line.find(' ');
         if (!in_fence_ || blank == std::string::npos) return;
         document_.examples.push_back({line.substr(blank + 1), "", line_});
         example_ = &document_.examples.back();
@@ -112,10 +120,32 @@ class Reader {
         }
     }
 
+    /// A line "key  type  default  meaning" of a block, without a default of what is only written. Keys of a table are
+    /// indented below it. Lines that continue a meaning are indented further.
+    void block_row(const std::string& line) {
+        constexpr std::size_t max_indent = 12;
+        const auto indent = line.find_first_not_of(' ');
+        if (indent == std::string::npos || indent > max_indent) return;
+        auto fields = split(line.substr(indent), std::regex("  +"));
+        if (fields.size() == 3) fields.insert(fields.begin() + 2, "written");
+        fields.resize(4);
+        parents_.resize(std::min(parents_.size(), indent / 2));
+        std::vector<std::string> paths;
+        for (const auto& parent : parents_.empty() ? std::vector<std::string>{""} : parents_.back())
+            for (const auto& key : split(fields[0], std::regex(", "))) paths.push_back(parent + key);
+        for (auto& path : paths) {
+            document_.keys.push_back({section_, tables_, path, fields[1], fields[2], is_column_, line_});
+            path += ".";
+        }
+        parents_.push_back(paths);
+    }
+
     Document& document_;
     std::size_t line_ = 0;
     bool in_fence_ = false;
     bool in_key_table_ = false;
+    bool in_key_block_ = false;
+    std::vector<std::vector<std::string>> parents_;  ///< of a line in a block: the paths of each table above it
     bool is_column_ = false;
     DocumentedExample* example_ = nullptr;
     std::string section_;

@@ -6,14 +6,14 @@
 
 namespace flightwatt::test {
 
-/// One key or column of a table "| key | type or unit | default | meaning |".
+/// One key or column of a table "| key | type or unit | default | meaning |", or of a block "text keys".
 struct DocumentedKey {
     std::string section;              ///< heading of the second level above it: "Mission file"
     std::vector<std::string> tables;  ///< what the heading of the third level names in `...`: "plan.levels"
-    std::string key;
-    std::string unit;        ///< of a number, else the type
-    std::string fallback;    ///< the column "default"
-    bool is_column = false;  ///< of a table, and not a key
+    std::string key;                  ///< may begin with its table: "time.column"
+    std::string unit;                 ///< of a number, else the type; "any" of a key that is permitted and not used
+    std::string fallback;             ///< the column "default"
+    bool is_column = false;           ///< of a table, and not a key
     std::size_t line = 0;
 };
 
