@@ -2,6 +2,7 @@
 
 #include "base/signal_watch.h"
 #include "cli/stage.h"
+#include "live/mavlink_playback.h"
 #include "live/playback.h"
 #include "stages.h"
 #include "telemetry/binary_log.h"
@@ -18,6 +19,7 @@ struct PlayArguments {
     std::optional<std::string> to;
     double speed = 1.0;
     std::optional<std::string> messages;
+    std::optional<std::string> aircraft;
 };
 
 /// The definitions that frames are made with and a binary log is read with: those of --messages, or of the log's own
@@ -75,15 +77,25 @@ void print_report(const cli::StageCall& call, const PlayArguments& arguments, co
 
 int play(const cli::StageCall& call, const PlayArguments& arguments) {
     constexpr std::string_view udp = "udp:";
-    if (!arguments.to) throw UsageError("nowhere to play to: expected --to udp:ADDRESS:PORT or -");
+    constexpr std::string_view mavlink = "mavlink:";
+    constexpr auto targets = "udp:ADDRESS:PORT, mavlink:ADDRESS:PORT or -";
+    if (!arguments.to) throw UsageError(fmt::format("nowhere to play to: expected --to {}", targets));
     const auto& to = *arguments.to;
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
-    if (to != "-" && !to.starts_with(udp))
-        throw UsageError(fmt::format("unknown target '{}': expected udp:ADDRESS:PORT or -", to));
+    if (to != "-" && !to.starts_with(udp) && !to.starts_with(mavlink))
+        throw UsageError(fmt::format("unknown target '{}': expected {}", to, targets));
     const SignalWatch signals;
-    const auto definitions = definitions_of(call, arguments);
     bool has_reader = true;
     const auto stop = [&] { return signals.received().has_value() || !has_reader; };
+    if (to.starts_with(mavlink)) {
+        if (arguments.messages) throw UsageError("--messages defines Paparazzi's messages: MAVLink's are known");
+        const auto target = live::open_mavlink_target(to.substr(mavlink.size()));
+        print_report(call, arguments,
+                     live::play_as_mavlink(call.inputs.front(), arguments.speed, target, stop, arguments.aircraft));
+        return cli::ok;
+    }
+    if (arguments.aircraft) throw UsageError("--aircraft belongs to mavlink: the messages of all are sent else");
+    const auto definitions = definitions_of(call, arguments);
     live::PlaybackTarget target = [&](const live::IncomingMessage& message) -> std::string_view {
         has_reader = cli::print_flushed(live::data_line(message));
         return {};
@@ -99,12 +111,14 @@ int flightwatt::stages::play_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "play", "LOG --to TARGET",
         R"(Sends a log as live telemetry, in its own time or faster, over a link that flightwatt watch listens to: a test
-bench for software that runs during a flight. The log is text or binary. Targets: udp:ADDRESS:PORT
-(Paparazzi's link frames, a datagram each), - (lines to the standard output; > FILE.data is a file that grows).)"};
+bench for software and ground stations. Targets: mavlink:ADDRESS:PORT (a log of any kind as MAVLink, a datagram
+for each message); of a Paparazzi log, text or binary, also udp:ADDRESS:PORT (its link frames) and - (lines to
+the standard output; > FILE.data is a file that grows).)"};
     stage.json_schema = cli::document_schema<live::PlaybackReport>;
     stage.max_inputs = 1;
     stage.output_help = "write how it was played to FILE instead of the standard output";
-    stage.examples = {"flightwatt play flight.data --to udp:127.0.0.1:4242 --speed 10",
+    stage.examples = {"flightwatt play flight.bin --to mavlink:127.0.0.1:14550 --speed 10",
+                      "flightwatt play flight.data --to udp:127.0.0.1:4242 --speed 10",
                       "flightwatt play flight.data --to - | flightwatt watch - --model model.toml --remaining 600"};
     stage.reads_logs = true;
     PlayArguments arguments;
@@ -116,5 +130,6 @@ bench for software that runs during a flight. The log is text or binary. Targets
                 "speed relative to the log's own time");
     options.add("messages", arguments.messages, cli::input_file("FILE"),
                 "definitions of the messages, for udp and binary logs: a messages.xml, or a .log; default: the log's");
+    options.add("aircraft", arguments.aircraft, {.value = "ID"}, "the aircraft of several in the log, for mavlink");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return play(call, arguments); });
 }

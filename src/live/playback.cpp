@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "live/sources/endpoints.h"
-#include "live/sources/message_readers.h"
+#include "live/sources/datagrams.h"
+#include "live/sources/player.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
@@ -15,7 +15,6 @@
 #include <thread>
 #include <utility>
 
-#include <boost/asio.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::live {
@@ -36,56 +35,6 @@ bool wait_for(Clock::time_point then, const std::function<bool()>& stop) {
     }
 }
 
-/// Sends the messages of a log to a target when they are due.
-class Player final : public MessageSink {
-  public:
-    Player(double speed, const PlaybackTarget& target, const std::function<bool()>& stop)
-        : speed_(speed), target_(target), stop_(stop) {}
-
-    bool is_stopped() const { return report_.stopped; }
-
-    void push(IncomingMessage message) override {
-        if (!message.time_s) return count("no time", 1);
-        if (report_.stopped) return;
-        const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
-        if (step_s > max_played_gap_s) ++report_.shortened_gaps;
-        report_.log_s += std::min(step_s, max_played_gap_s);
-        last_s_ = message.time_s;
-        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
-        report_.stopped = !wait_for(due, stop_);
-        if (report_.stopped) return;
-        report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
-        const auto reason = target_(message);
-        ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
-    }
-
-    void count(std::string_view reason, std::size_t times) override {
-        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
-    }
-
-    PlaybackReport end() {
-        report_.played_s = Seconds(Clock::now() - begin_).count();
-        return std::move(report_);
-    }
-
-  private:
-    double speed_;
-    const PlaybackTarget& target_;
-    const std::function<bool()>& stop_;
-    PlaybackReport report_;
-    std::optional<double> last_s_;  ///< of the message before, on the log's clock
-    Clock::time_point begin_ = Clock::now();
-};
-
-/// In chunks, so that a stopped player ends soon.
-template <typename Reader>
-void play_bytes(std::string_view bytes, Reader& reader, const Player& player) {
-    constexpr std::size_t chunk = 4096;
-    for (auto rest = bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(chunk, rest.size())))
-        reader.push(rest.substr(0, chunk));
-    if (!player.is_stopped()) reader.flush();
-}
-
 /// Throws InputError where the lengths of the messages differ from their definitions.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
     LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
@@ -94,35 +43,50 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
     if (!player.is_stopped()) require_matching_lengths(reader.counts(), log);
 }
 
-/// Sends messages as link frames, each in a datagram; without a receiver it is lost, as over the air.
+/// Sends messages as link frames, each in a datagram.
 class UdpTarget {
   public:
     UdpTarget(std::string_view to, telemetry::MessageDictionary definitions, telemetry::LinkVersion version)
-        : definitions_(std::move(definitions)),
-          encoder_(definitions_, version),
-          to_(parse_udp_address(to)),
-          socket_(context_, to_.protocol()) {
-        socket_.set_option(boost::asio::socket_base::broadcast(true));
-    }
+        : definitions_(std::move(definitions)), encoder_(definitions_, version), datagrams_(to) {}
 
     std::string_view send(const IncomingMessage& message) {
         frame_.clear();
         if (const auto reason = encoder_.append_frame(message.text, frame_); !reason.empty()) return reason;
-        boost::system::error_code error;
-        socket_.send_to(boost::asio::buffer(frame_), to_, 0, error);
-        return error && error != boost::asio::error::connection_refused ? "the network did not accept them" : "";
+        return datagrams_.send(frame_);
     }
 
   private:
     telemetry::MessageDictionary definitions_;
     telemetry::LinkEncoder encoder_;
     std::string frame_;
-    boost::asio::ip::udp::endpoint to_;
-    boost::asio::io_context context_;
-    boost::asio::ip::udp::socket socket_;
+    Datagrams datagrams_;
 };
 
 }  // namespace
+
+void Player::push(IncomingMessage message) {
+    if (!message.time_s) return count("no time", 1);
+    if (report_.stopped) return;
+    const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
+    if (step_s > max_played_gap_s) ++report_.shortened_gaps;
+    report_.log_s += std::min(step_s, max_played_gap_s);
+    last_s_ = message.time_s;
+    const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
+    report_.stopped = !wait_for(due, stop_);
+    if (report_.stopped) return;
+    report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
+    const auto reason = target_(message);
+    ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
+}
+
+void Player::count(std::string_view reason, std::size_t times) {
+    if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
+}
+
+PlaybackReport Player::end() {
+    report_.played_s = Seconds(Clock::now() - begin_).count();
+    return std::move(report_);
+}
 
 std::string data_line(const IncomingMessage& message) {
     const double time_s = message.time_s.value();
@@ -142,7 +106,7 @@ PlaybackReport play(const std::filesystem::path& log, double speed, const Playba
     if (const auto autopilot = telemetry::detect_autopilot_format(text)) {
         throw InputError({log.string()},
                          fmt::format("is a log of another autopilot ({})", telemetry::to_string(*autopilot)),
-                         "expected a Paparazzi log: play sends its messages");
+                         "play it as MAVLink: --to mavlink:127.0.0.1:14550");
     }
     const auto framing = telemetry::detect_binary_framing(text);
     if (framing && !definitions) {

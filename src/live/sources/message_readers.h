@@ -132,6 +132,8 @@ class MavlinkReader final : public ByteReader {
     MavlinkReader(MessageSink& sink, std::shared_ptr<telemetry::MavlinkVehicles> vehicles, bool is_tlog)
         : sink_(sink), vehicles_(std::move(vehicles)), decoder_(vehicles_, is_tlog) {}
     void push(std::string_view bytes) override;
+    /// Ends the stream.
+    void flush() { restart(); }
     void restart() override;
 
   private:
