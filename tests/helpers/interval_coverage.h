@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/error_analysis.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>

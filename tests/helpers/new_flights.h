@@ -2,7 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 #include "mission/plan.h"
