@@ -259,7 +259,6 @@ PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wa
     return sampler;
 }
 
-using Clock = std::chrono::steady_clock;
 
 /// A pseudo terminal without echo and translations: programs that print through stdio flush each line into it, into a
 /// pipe only each block. `ends`: ours, the program's. Returns false with errno without one.
@@ -385,7 +384,6 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
     const auto given = root.optional_table("sampler");
     if (!given) return settings;
     const auto& table = *given;
-    table.refuse_keys_except({"kind", "interval_s", "rails", "command", "file", "idle_file", "sysfs"});
     settings.where = table.where();
     settings.kind = kind_of(table);
     settings.interval_is_given = table.has("interval_s");
@@ -401,6 +399,7 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
     }
     if (settings.kind == SamplerKind::recorded) settings.file = table.string("file");
     settings.idle_file = table.optional_string("idle_file").value_or("");
+    table.refuse_unknown_keys();
     return settings;
 }
 

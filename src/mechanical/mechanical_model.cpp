@@ -99,13 +99,6 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
 }
 
-PowerBasis read_power_basis(const TomlTable& table) {
-    const auto name = table.string("power");
-    if (name == to_string(PowerBasis::mean)) return PowerBasis::mean;
-    if (name == to_string(PowerBasis::curve)) return PowerBasis::curve;
-    throw InputError(table.where("power"), fmt::format("power = '{}', expected curve or mean", name));
-}
-
 void list_phase(TomlFields& fields, PhaseModel& phase) {
     const auto* table = fields.source();
     auto& fourier = phase.fourier;
@@ -125,12 +118,12 @@ void list_phase(TomlFields& fields, PhaseModel& phase) {
     if (fields.has("flights", phase.flights > 0)) fields.count("flights", phase.flights);
     if (fields.has("edge_samples", phase.edge_samples > 0)) fields.count("edge_samples", phase.edge_samples);
     bool mean_curve = false;  // of earlier versions
-    if (fields.has("mean_curve", mean_curve)) fields.flag("mean_curve", mean_curve);
-    if (fields.has("open_frequency", phase.open_frequency)) fields.flag("open_frequency", phase.open_frequency);
-    if (fields.has("not_negative", phase.not_negative)) fields.flag("not_negative", phase.not_negative);
+    fields.optional_flag("mean_curve", mean_curve);
+    fields.optional_flag("open_frequency", phase.open_frequency);
+    fields.optional_flag("not_negative", phase.not_negative);
     fields.optional_table("level_spread", phase.level_spread, list_variance);
     if (fields.has("power", !phase.power.reason.empty())) {
-        fields.name("power", phase.power.by, read_power_basis);
+        fields.choice("power", phase.power.by, {PowerBasis::curve, PowerBasis::mean});
         fields.text("power_reason", phase.power.reason);
     }
     if (table != nullptr)  // keys of earlier versions, which changed no prediction
@@ -183,15 +176,6 @@ struct TermRow {
     std::vector<double> covariance;  ///< with each of the terms
 };
 
-PowerTerm read_term_name(const TomlTable& table) {
-    const auto name = table.string("term");
-    if (const auto term = power_term_from(name)) return *term;
-    std::vector<std::string_view> names(all_power_terms.size());
-    std::ranges::transform(all_power_terms, names.begin(), [](PowerTerm term) { return to_string(term); });
-    throw InputError(table.where("term"), fmt::format("there is no term '{}'", name),
-                     fmt::format("it is one of {}", fmt::join(names, ", ")));
-}
-
 /// Of a term that was read, the last of `rows`: given once, with as many covariances as the model has terms.
 void require_term(const TomlTable& table, const std::vector<TermRow>& rows, std::size_t count) {
     const auto& row = rows.back();
@@ -230,7 +214,7 @@ void list_terms(TomlFields& fields, Model& model) {
     if (table != nullptr && count == 0)
         throw InputError(table->where(), "there are no terms", "expected a table [[...terms]] for each");
     fields.tables("terms", rows, [&](TomlFields& of, TermRow& row) {
-        of.name("term", row.term, read_term_name);
+        of.choice("term", row.term, all_power_terms);
         if (of.source() == nullptr)
             of.line(fmt::format("coefficient = {}  # {}", toml_real(row.coefficient), unit_of(row.term)));
         else
@@ -287,7 +271,7 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     fields.text("name", model.name);
     if (fields.has("description", true)) fields.text("description", model.description);
     if (fields.has("weighting", true)) fields.text("weighting", model.weighting);
-    if (fields.has("rotorcraft", model.is_rotorcraft)) fields.flag("rotorcraft", model.is_rotorcraft);
+    fields.optional_flag("rotorcraft", model.is_rotorcraft);
     fields.optional_real("pack_voltage_v", model.pack_voltage_v, more_than(0.0));
     for (const auto phase : flight::all_phases) {
         fields.line("");
