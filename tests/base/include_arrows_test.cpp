@@ -201,6 +201,20 @@ TEST(IncludeArrows, LeadToEachPublicHeaderFromOutsideOfItsModule) {
     }
 }
 
+/// What a .cpp defines for others is declared in the header of its name, in its folder or among the installed ones.
+TEST(IncludeArrows, LeadFromEachSourceToAHeaderOfItsName) {
+    const auto root = test::source_dir();
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "src")) {
+        auto header = entry.path();
+        if (header.extension() != ".cpp") continue;
+        if (header.parent_path().filename() == "identification") continue;  // circuit_problem.h has several
+        header.replace_extension(".h");
+        EXPECT_TRUE(std::filesystem::exists(header) ||
+                    std::filesystem::exists(root / "include/flightwatt" / header.filename()))
+            << entry.path() << " has no header of its name";
+    }
+}
+
 TEST(IncludeArrows, AModuleHasFewPublicHeaders) {
     std::map<std::string, std::size_t> headers;
     // The headers of src/library are those that are installed.
