@@ -21,8 +21,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// The modules that a module may include, besides itself: the table "| module | may include |" of
-/// ARCHITECTURE.md, which is the only place that says so.
+/// The modules that a module may include, in addition to itself: the table "| module | may include |" of
+/// ARCHITECTURE.md, which is the only place that states so.
 std::map<std::string, std::set<std::string>> read_layout() {
     std::map<std::string, std::set<std::string>> layout;
     std::ifstream file(test::source_dir() / "ARCHITECTURE.md");

@@ -160,7 +160,7 @@ TEST(TomlKeys, HaveUnitDefaultAndExample) {
     }
 }
 
-/// Keys that stand as literals where the source asks a table for one: what runs may miss, this finds.
+/// Keys that are literals where the source asks a table for one: what runs may miss, this finds.
 std::set<std::string> keys_in_source() {
     const std::regex asked(
         R"re((?:\.|->)(?:(?:optional_)?(?:number|string|boolean|real|text|flag|table)s?|counts?|choice|has)\(\s*"([a-z][a-z0-9_]*)")re");
