@@ -4,6 +4,7 @@
 #include "base/toml_reader.h"
 
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,10 @@ class TomlFields {
         if (table_ == nullptr) return write(key, toml_string(value));
         value = table_->string(key);
     }
+    /// A text that is written unless it is empty.
+    void optional_text(std::string_view key, std::string& value) {
+        if (has(key, !value.empty())) text(key, value);
+    }
     void texts(std::string_view key, std::vector<std::string>& values) {
         if (table_ == nullptr) return write(key, toml_strings(values));
         values = table_->strings(key);
@@ -61,15 +66,32 @@ class TomlFields {
         if (table_ == nullptr) return write(key, fmt::format("{}", value));
         value = count_in(*table_, key, least);
     }
+    void counts(std::string_view key, std::vector<std::size_t>& values) {
+        if (table_ == nullptr) return write(key, fmt::format("[{}]", fmt::join(values, ", ")));
+        for (const double value : table_->numbers(key)) values.push_back(static_cast<std::size_t>(value));
+    }
     void flag(std::string_view key, bool& value) {
         if (table_ == nullptr) return write(key, fmt::format("{}", value));
         value = table_->optional_boolean(key).value_or(false);
     }
-    /// A value that is written as its to_string.
-    template <typename Value, typename Read>
-    void name(std::string_view key, Value& value, const Read& read) {
+    /// A flag that is written if it is set.
+    void optional_flag(std::string_view key, bool& value) {
+        if (has(key, value)) flag(key, value);
+    }
+    /// One of `values`, which is written as its to_string.
+    template <typename Value, typename Values = std::initializer_list<Value>>
+    void choice(std::string_view key, Value& value, const Values& values) {
         if (table_ == nullptr) return write(key, toml_string(to_string(value)));
-        value = read(*table_);
+        const auto name = table_->string(key);
+        std::vector<std::string_view> names;
+        for (const auto one : values) {
+            names.push_back(to_string(one));
+            if (names.back() != name) continue;
+            value = one;
+            return;
+        }
+        throw InputError(table_->where(key), fmt::format("there is no {} '{}'", key, truncated(name)),
+                         fmt::format("it is one of {}", fmt::join(names, ", ")));
     }
 
     template <typename Record, typename List>

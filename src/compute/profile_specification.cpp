@@ -100,15 +100,15 @@ void require_use_of_parameters(const WrittenComponent& component) {
 
 WrittenComponent component_from(const TomlTable& table, const std::string& name, const Location& where,
                                 const ProfileSpecification& specification, const ProfileTiming& timing) {
-    table.refuse_keys_except({"command", "qos", "alone", "duration_s", "warm_up_s", "timeout_s"});
     refuse_bad_name(name, "_-+.", where);
     if (name == "idle" || name == "runs") {
         throw InputError(where, fmt::format("a component is called '{}', as a file of the results is", name));
     }
     WrittenComponent component{name, {}, ranges_from(table), timing_from(table, timing), true, where};
     component.alone = table.optional_boolean("alone").value_or(true);
-    const bool is_recorded = specification.sampler.kind == SamplerKind::recorded;
-    if (is_recorded && !table.has("command")) return component;
+    const bool has_command = table.has("command");
+    table.refuse_unknown_keys();
+    if (!has_command && specification.sampler.kind == SamplerKind::recorded) return component;
     component.command = table.strings("command");
     component.where = table.where("command");
     if (component.command.empty() || component.command.front().empty()) {
@@ -171,7 +171,6 @@ void require_recorded_file(const TomlTable& table, const std::vector<ProfiledCom
 void add_together(const TomlTable& root, const std::vector<WrittenComponent>& written, const ProfileTiming& timing,
                   ProfileSpecification& specification) {
     for (const auto& group : root.tables("together")) {
-        group.refuse_keys_except({"name", "components", "duration_s", "warm_up_s", "timeout_s"});
         const auto names = group.strings("components");
         const auto where = group.where("components");
         if (names.size() < 2) throw InputError(where, "fewer than two components cannot run together");
@@ -190,6 +189,7 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
             throw InputError(where, fmt::format("a second '{}'", name));
         }
         components.push_back(multiplied_out(name, parts, timing_from(group, timing), specification.sampler, where));
+        group.refuse_unknown_keys();
     }
 }
 
@@ -197,8 +197,6 @@ void add_together(const TomlTable& root, const std::vector<WrittenComponent>& wr
 
 ProfileSpecification parse_profile_specification(std::string_view text, const std::filesystem::path& path) {
     const auto root = parse_toml(text, path.string(), FileKind::specification);
-    root.refuse_keys_except({"format", "duration_s", "warm_up_s", "timeout_s", "repeats", "seed", "idle_s",
-                             "above_idle", "sampler", "components", "together"});
     require_known_format(root);
     ProfileSpecification specification;
     specification.file = path.string();
@@ -218,6 +216,7 @@ ProfileSpecification parse_profile_specification(std::string_view text, const st
             multiplied_out(name, {last}, last.timing, specification.sampler, last.where));
     }
     add_together(root, written, timing, specification);
+    root.refuse_unknown_keys();
     if (specification.components.empty()) throw InputError(components.where(), "there is nothing to profile");
     if (specification.sampler.kind == SamplerKind::recorded) {
         require_recorded_file(root.table("sampler"), specification.components);

@@ -3,8 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "base/text.h"
-#include "base/toml_reader.h"
+#include "base/toml_fields.h"
 #include "flight/families/series_table.h"
 #include "flight/select.h"
 #include "telemetry/log_configuration.h"
@@ -14,6 +13,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,8 +24,11 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr CurrentOrigin current_origins[] = {CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle};
+
 /// Counts of skipped lines; those after the last message have no time, so `time_s` is then one shorter.
-std::string skipped_text(const telemetry::SkippedLines& skipped) {
+void list_skipped(TomlFields& fields, telemetry::SkippedLines& skipped) {
+    using Unit = telemetry::SkippedLines::Unit;
     std::vector<double> time_s;
     std::vector<std::size_t> count;
     std::vector<std::size_t> first_line;
@@ -34,96 +37,104 @@ std::string skipped_text(const telemetry::SkippedLines& skipped) {
         count.push_back(at.count);
         first_line.push_back(at.first_line);
     }
-    const auto unit = skipped.unit == telemetry::SkippedLines::Unit::line
-                          ? std::string()
-                          : fmt::format("unit = \"{}\"\n", to_string(skipped.unit));
-    return fmt::format("[[skipped]]\nreason = {}\n{}time_s = {}\ncount = [{}]\nfirst_line = [{}]\n",
-                       toml_string(skipped.reason), unit, toml_reals(time_s), fmt::join(count, ", "),
-                       fmt::join(first_line, ", "));
+    fields.text("reason", skipped.reason);
+    if (fields.has("unit", skipped.unit != Unit::line))
+        fields.choice("unit", skipped.unit, {Unit::line, Unit::frame, Unit::byte});
+    fields.reals("time_s", time_s);
+    fields.counts("count", count);
+    fields.counts("first_line", first_line);
+    if (fields.source() == nullptr) return;
+    if (first_line.size() != count.size() || time_s.size() > count.size() || time_s.size() + 1 < count.size())
+        throw InputError(fields.source()->where(), "time_s, count and first_line have different lengths");
+    for (std::size_t i = 0; i < count.size(); ++i)
+        skipped.lines.push_back(
+            {i < time_s.size() ? time_s[i] : std::numeric_limits<double>::infinity(), count[i], first_line[i]});
 }
 
-telemetry::SkippedLines::Unit read_skip_unit(const std::string& text, const Location& where) {
-    using Unit = telemetry::SkippedLines::Unit;
-    for (const auto unit : {Unit::line, Unit::frame, Unit::byte})
-        if (to_string(unit) == text) return unit;
-    throw InputError(where, fmt::format("unit is '{}', expected line, frame or byte", truncated(text)));
+void list_block_names(TomlFields& fields, std::map<int, std::string>& names) {
+    if (const auto* table = fields.source())
+        for (const auto& key : table->keys()) {
+            const auto number = parse_unsigned(key);
+            if (!number) throw InputError(table->where(key), fmt::format("block '{}' is not a number", key));
+            names[static_cast<int>(*number)] = table->string(key);
+        }
+    for (auto& [number, name] : names) fields.text(std::to_string(number), name);
 }
 
-telemetry::SkippedLines read_skipped(const TomlTable& table) {
-    telemetry::SkippedLines skipped{table.string("reason"), {}};
-    const auto time_s = table.numbers("time_s");
-    const auto count = table.numbers("count");
-    const auto first_line = table.numbers("first_line");
-    if (const auto unit = table.optional_string("unit")) skipped.unit = read_skip_unit(*unit, table.where());
-    table.refuse_unknown_keys();
-    if (first_line.size() != count.size() || time_s.size() > count.size() || time_s.size() + 1 < count.size()) {
-        throw InputError(table.where(), "time_s, count and first_line have different lengths");
-    }
-    for (std::size_t i = 0; i < count.size(); ++i) {
-        skipped.lines.push_back({i < time_s.size() ? time_s[i] : std::numeric_limits<double>::infinity(),
-                                 static_cast<std::size_t>(count[i]), static_cast<std::size_t>(first_line[i])});
-    }
-    return skipped;
+/// Lists a table whose keys are those of a map.
+template <typename Value>
+void list_by_id(TomlFields& fields, std::map<std::string, Value>& values) {
+    if (fields.source() != nullptr)
+        for (const auto& id : fields.source()->keys()) values[id];
+    for (auto& [id, value] : values)
+        if constexpr (std::is_same_v<Value, double>)
+            fields.real(id, value);
+        else
+            fields.text(id, value);
 }
 
-Track read_track(const TomlTable& table) {
+/// A column without its values.
+struct Column {
+    std::string name;
+    bool is_chosen = false;  ///< it repeats the chosen one of the others
     Track track;
-    const auto column = table.string("name");
-    track.name = column.substr(0, column.find('.'));
-    track.source = table.string("source");
-    track.device = table.optional_string("device").value_or("");
-    if (const auto since_s = table.optional_number("since_s")) track.since_s = *since_s;
-    table.refuse_unknown_keys();
-    return track;
+};
+
+void list_column(TomlFields& fields, Column& column) {
+    fields.text("name", column.name);
+    fields.text("source", column.track.source);
+    fields.optional_flag("chosen", column.is_chosen);
+    fields.optional_text("device", column.track.device);
+    if (fields.has("since_s", std::isfinite(column.track.since_s))) fields.real("since_s", column.track.since_s);
 }
 
-std::map<int, std::string> read_block_names(const TomlTable& table) {
-    std::map<int, std::string> names;
-    for (const auto& key : table.keys()) {
-        const auto number = parse_unsigned(key);
-        if (!number) throw InputError(table.where(key), fmt::format("block '{}' is not a number", key));
-        names[static_cast<int>(*number)] = table.string(key);
+void list_columns(TomlFields& fields, FrontMatter& matter) {
+    std::vector<Column> columns;
+    for (std::size_t i = 0; i < matter.series.tracks.size(); ++i) {
+        const auto& track = matter.series.tracks[i];
+        const bool is_chosen = i == 0 && !matter.chosen_column.empty();
+        columns.push_back(
+            {matter.columns[i], is_chosen, {.source = track.source, .device = track.device, .since_s = track.since_s}});
     }
-    return names;
-}
-
-FrontMatter read_matter(const TomlTable& table) {
-    FrontMatter matter;
-    auto& series = matter.series;
-    series.flight = table.string("flight");
-    series.aircraft_id = table.string("aircraft_id");
-    series.aircraft_name = table.string("aircraft_name");
-    series.firmware = table.optional_string("firmware").value_or("");
-    series.current_origin = read_current_origin(table);
-    series.planned_ground_altitude_m = table.optional_number("planned_ground_altitude_m");
-    series.start_clock_s = table.optional_number("start_clock_s");
-    series.log_is_missing = table.optional_boolean("lacks_log").value_or(false);
-    if (table.has("notes")) series.notes = table.strings("notes");
-    if (const auto names = table.optional_table("block_names")) series.block_names = read_block_names(*names);
-    series.pack_serial = table.optional_string("pack_serial").value_or("");
-    series.pack_cycles = table.optional_number("pack_cycles");
-    if (const auto kinds = table.optional_table("monitor_kinds"))
-        for (const auto& id : kinds->keys()) series.monitor_kinds[id] = kinds->string(id);
-    if (const auto capacities = table.optional_table("monitor_capacities_ah"))
-        for (const auto& id : capacities->keys()) series.monitor_capacities_ah[id] = capacities->number(id);
-    for (const auto& assumed : table.tables("assumed_definition")) {
-        series.assumed_definitions.push_back({assumed.string("text"), assumed.number("since_s")});
-        assumed.refuse_unknown_keys();
-    }
-    for (const auto& skipped : table.tables("skipped")) series.skipped.push_back(read_skipped(skipped));
-    for (const auto& column : table.tables("column")) {
-        const auto name = column.string("name");
-        const bool is_chosen = column.optional_boolean("chosen").value_or(false);
-        auto track = read_track(column);
+    fields.tables("column", columns, list_column, "");
+    if (fields.source() == nullptr) return;
+    for (auto& [name, is_chosen, track] : columns) {
         if (is_chosen) {
             matter.chosen_column = name;
             continue;
         }
+        track.name = name.substr(0, name.find('.'));
         matter.columns.push_back(name);
-        series.tracks.push_back(std::move(track));
+        matter.series.tracks.push_back(std::move(track));
     }
-    table.refuse_unknown_keys();
-    return matter;
+}
+
+void list_matter(TomlFields& fields, FrontMatter& matter) {
+    auto& series = matter.series;
+    fields.text("flight", series.flight);
+    fields.text("aircraft_id", series.aircraft_id);
+    fields.text("aircraft_name", series.aircraft_name);
+    fields.optional_text("firmware", series.firmware);
+    fields.choice("current_origin", series.current_origin, current_origins);
+    fields.optional_real("planned_ground_altitude_m", series.planned_ground_altitude_m);
+    fields.optional_real("start_clock_s", series.start_clock_s);
+    fields.optional_flag("lacks_log", series.log_is_missing);
+    fields.optional_text("pack_serial", series.pack_serial);
+    fields.optional_real("pack_cycles", series.pack_cycles);
+    if (fields.has("notes", !series.notes.empty())) fields.texts("notes", series.notes);
+    const auto section = [&](std::string_view key, auto& entries, const auto& list) {
+        if (fields.has(key, !entries.empty())) fields.table(key, entries, list, TomlLayout::section);
+    };
+    section("block_names", series.block_names, list_block_names);
+    section("monitor_kinds", series.monitor_kinds, list_by_id<std::string>);
+    section("monitor_capacities_ah", series.monitor_capacities_ah, list_by_id<double>);
+    const auto list_assumed = [](TomlFields& of, telemetry::AssumedDefinition& assumed) {
+        of.text("text", assumed.text);
+        of.real("since_s", assumed.since_s);
+    };
+    fields.tables("assumed_definition", series.assumed_definitions, list_assumed, "");
+    fields.tables("skipped", series.skipped, list_skipped, "");
+    list_columns(fields, matter);
 }
 
 /// Names of the columns: NAME of the first candidate of each name, NAME.2, NAME.3 ... of the others.
@@ -137,65 +148,28 @@ std::vector<std::string> column_names(const std::vector<Track>& tracks) {
     return names;
 }
 
-/// The tracks of the file: those of the series, behind the power that is chosen if that is not the first candidate.
-struct FileTracks {
-    std::vector<Track> tracks;
-    bool has_chosen = false;  ///< the first one is not of the series
-};
-
-FileTracks file_tracks(const FlightSeries& series) {
-    FileTracks file{series.tracks};
-    const auto first = std::ranges::find(series.tracks, "power_w", &Track::name);
-    if (first == series.tracks.end()) return file;
-    Track power = select_tracks(series).power_w;
-    if (power.empty() || (power.source == first->source && power.device == first->device)) return file;
-    file.tracks.insert(file.tracks.begin(), std::move(power));
-    file.has_chosen = true;
+/// The file of a series: its tracks behind the power that is chosen, if that is not the first candidate.
+FrontMatter file_of(const FlightSeries& series) {
+    FrontMatter file{true, series, {}};
+    auto& tracks = file.series.tracks;
+    const auto first = std::ranges::find(tracks, "power_w", &Track::name);
+    auto power = first != tracks.end() ? select_tracks(series).power_w : Track();
+    if (!power.empty() && (power.source != first->source || power.device != first->device)) {
+        tracks.insert(tracks.begin(), std::move(power));
+        file.chosen_column = "power_w";
+    }
+    file.columns = column_names(tracks);
     return file;
 }
 
 /// The metadata as comment lines of TOML: `# format = 1` ...
-std::string format_front_matter(const FlightSeries& series, const FileTracks& file) {
-    std::string toml = format_line();
-    toml += fmt::format("flight = {}\naircraft_id = {}\naircraft_name = {}\n", toml_string(series.flight),
-                        toml_string(series.aircraft_id), toml_string(series.aircraft_name));
-    if (!series.firmware.empty()) toml += fmt::format("firmware = {}\n", toml_string(series.firmware));
-    toml += fmt::format("current_origin = {}\n", toml_string(to_string(series.current_origin)));
-    if (const auto ground_m = series.planned_ground_altitude_m) {
-        toml += fmt::format("planned_ground_altitude_m = {}\n", toml_real(*ground_m));
-    }
-    if (series.start_clock_s) toml += fmt::format("start_clock_s = {}\n", toml_real(*series.start_clock_s));
-    if (series.log_is_missing) toml += "lacks_log = true\n";
-    if (!series.pack_serial.empty()) toml += fmt::format("pack_serial = {}\n", toml_string(series.pack_serial));
-    if (series.pack_cycles) toml += fmt::format("pack_cycles = {}\n", toml_real(*series.pack_cycles));
-    if (!series.notes.empty()) toml += fmt::format("notes = {}\n", toml_strings(series.notes));
-    if (!series.block_names.empty()) toml += "[block_names]\n";
-    for (const auto& [number, name] : series.block_names) {
-        toml += fmt::format("{} = {}\n", number, toml_string(name));
-    }
-    if (!series.monitor_kinds.empty()) toml += "[monitor_kinds]\n";
-    for (const auto& [id, kind] : series.monitor_kinds) toml += fmt::format("{} = {}\n", id, toml_string(kind));
-    if (!series.monitor_capacities_ah.empty()) toml += "[monitor_capacities_ah]\n";
-    for (const auto& [id, capacity_ah] : series.monitor_capacities_ah)
-        toml += fmt::format("{} = {}\n", id, toml_real(capacity_ah));
-    for (const auto& assumed : series.assumed_definitions) {
-        toml += fmt::format("[[assumed_definition]]\ntext = {}\nsince_s = {}\n", toml_string(assumed.text),
-                            toml_real(assumed.since_s));
-    }
-    for (const auto& skipped : series.skipped) toml += skipped_text(skipped);
-    const auto columns = column_names(file.tracks);
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        const auto& track = file.tracks[i];
-        toml += fmt::format("[[column]]\nname = {}\nsource = {}\n", toml_string(columns[i]), toml_string(track.source));
-        if (i == 0 && file.has_chosen) toml += "chosen = true\n";
-        if (!track.device.empty()) toml += fmt::format("device = {}\n", toml_string(track.device));
-        if (std::isfinite(track.since_s)) toml += fmt::format("since_s = {}\n", toml_real(track.since_s));
-    }
-    toml.pop_back();
-    return fmt::format("# {}\n", boost::algorithm::replace_all_copy(toml, "\n", "\n# "));
+std::string format_front_matter(FrontMatter& file) {
+    TomlFields fields("");
+    list_matter(fields, file);
+    return fmt::format("# {}\n", boost::algorithm::replace_all_copy(format_line() + fields.lines(), "\n", "\n# "));
 }
 
-/// Throws InputError for a newer format, and for metadata that format_front_matter does not write.
+/// Throws InputError for a newer format, and for metadata that list_matter does not list.
 FrontMatter read_front_matter(std::string_view text, const std::string& file) {
     std::string toml;
     bool is_ours = false;
@@ -210,8 +184,10 @@ FrontMatter read_front_matter(std::string_view text, const std::string& file) {
     if (!is_ours) return {};
     const auto table = parse_toml(toml, file);
     require_known_format(table);
-    auto matter = read_matter(table);
-    matter.present = true;
+    FrontMatter matter{true, {}, {}};
+    TomlFields fields(table);
+    list_matter(fields, matter);
+    table.refuse_unknown_keys();
     return matter;
 }
 
@@ -272,11 +248,9 @@ void require_samples(const FlightSeries& series) {
 }  // namespace
 
 CurrentOrigin read_current_origin(const TomlTable& table) {
-    const auto text = table.string("current_origin");
-    for (const auto origin : {CurrentOrigin::unknown, CurrentOrigin::sensor, CurrentOrigin::throttle})
-        if (to_string(origin) == text) return origin;
-    throw InputError(table.where("current_origin"), fmt::format("current_origin is '{}'", text),
-                     "expected 'measured by a sensor', 'computed from throttle' or 'unknown'");
+    auto origin = CurrentOrigin::unknown;
+    TomlFields(table).choice("current_origin", origin, current_origins);
+    return origin;
 }
 
 std::string to_csv(const FlightSeries& series) {
@@ -286,9 +260,9 @@ std::string to_csv(const FlightSeries& series) {
 }
 
 void write_csv(const FlightSeries& series, const TextSink& sink) {
-    const auto file = file_tracks(series);
-    sink(fmt::format("{}time_s,{}\n", format_front_matter(series, file), fmt::join(column_names(file.tracks), ",")));
-    write_rows(file.tracks, sink);
+    auto file = file_of(series);
+    sink(fmt::format("{}time_s,{}\n", format_front_matter(file), fmt::join(file.columns, ",")));
+    write_rows(file.series.tracks, sink);
 }
 
 std::vector<FlightSeries> parse_series_recordings(std::string_view text, const std::filesystem::path& file) {

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "mechanical/physical/power_regression.h"
+#include "mechanical/physical/term_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -46,7 +46,7 @@ TEST(Csv, QuotedCellsGoThereAndBack) {
 }
 
 TEST(Csv, RowsAreReadWhereTheyStand) {
-    const std::string text = "a,b,c,d\n1.5,\"say \"\"so\"\"\",,\"x,y\"\n,,,\n";
+    const std::string text = "a,b,c,d\n1.5,\"use \"\"so\"\"\",,\"x,y\"\n,,,\n";
     std::vector<std::vector<std::string>> rows;
     std::vector<std::size_t> columns;
     for_each_csv_row(text, "a.csv", [&](const CsvRowView& row) {
@@ -56,7 +56,7 @@ TEST(Csv, RowsAreReadWhereTheyStand) {
         EXPECT_EQ(row.cells[0].text.data(), text.data() + text.find("1.5")) << "no copy";
         for (const auto& cell : row.cells) columns.push_back(cell.column);
     });
-    EXPECT_THAT(rows, ElementsAre(ElementsAre("a", "b", "c", "d"), ElementsAre("1.5", "say \"so\"", "", "x,y"),
+    EXPECT_THAT(rows, ElementsAre(ElementsAre("a", "b", "c", "d"), ElementsAre("1.5", "use \"so\"", "", "x,y"),
                                   ElementsAre("", "", "", "")));
     EXPECT_THAT(columns, ElementsAre(1U, 5U, 18U, 19U));
 }

@@ -12,7 +12,7 @@ namespace {
 TEST(Location, IsPrintedWithoutThePartsThatAreUnknown) {
     EXPECT_EQ(to_string(Location{"a.csv", 12, 7}), "a.csv:12:7");
     EXPECT_EQ(to_string(Location{"a.csv", 12, 0}), "a.csv:12");
-    EXPECT_EQ(to_string(Location{"a.csv", 0, 7}), "a.csv") << "a column without a line says nothing";
+    EXPECT_EQ(to_string(Location{"a.csv", 0, 7}), "a.csv") << "a column without a line states nothing";
     EXPECT_EQ(to_string(Location{}), "");
 }
 

@@ -21,8 +21,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// The modules that a module may include, besides itself: the table "| module | may include |" of
-/// ARCHITECTURE.md, which is the only place that says so.
+/// The modules that a module may include, in addition to itself: the table "| module | may include |" of
+/// ARCHITECTURE.md, which is the only place that states so.
 std::map<std::string, std::set<std::string>> read_layout() {
     std::map<std::string, std::set<std::string>> layout;
     std::ifstream file(test::source_dir() / "ARCHITECTURE.md");
@@ -198,6 +198,20 @@ TEST(IncludeArrows, LeadToEachPublicHeaderFromOutsideOfItsModule) {
         const auto header = entry.path().lexically_relative(src);
         if (!is_public_header(header)) continue;
         EXPECT_TRUE(used.contains(header.generic_string())) << header << " has no user outside of its module";
+    }
+}
+
+/// What a .cpp defines for others is declared in the header of its name, in its folder or among the installed ones.
+TEST(IncludeArrows, LeadFromEachSourceToAHeaderOfItsName) {
+    const auto root = test::source_dir();
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "src")) {
+        auto header = entry.path();
+        if (header.extension() != ".cpp") continue;
+        if (header.parent_path().filename() == "identification") continue;  // circuit_problem.h has several
+        header.replace_extension(".h");
+        EXPECT_TRUE(std::filesystem::exists(header) ||
+                    std::filesystem::exists(root / "include/flightwatt" / header.filename()))
+            << entry.path() << " has no header of its name";
     }
 }
 

@@ -42,7 +42,7 @@ TEST_F(ReadFile, TakesFilesAndPipes) {
     });
     EXPECT_EQ(read_file("/dev/fd/" + std::to_string(ends[0])), text) << "as the shell's <(COMMAND)";
     ::close(ends[0]);
-    EXPECT_NE(read_file("/proc/self/status"), "") << "a file that says it has no size";
+    EXPECT_NE(read_file("/proc/self/status"), "") << "a file that states it has no size";
 }
 
 TEST_F(ReadFile, SaysWhyItCannot) {
@@ -61,14 +61,14 @@ TEST_F(ReadFile, SaysWhyItCannot) {
 
 TEST_F(ReadFile, SaysThatAFolderIsNotAllowed) {
     const auto user = ::geteuid();
-    constexpr ::uid_t nobody = 65534;
-    if (user == 0 && ::seteuid(nobody) != 0) GTEST_SKIP() << "root may read everything";
+    constexpr ::uid_t nobody_id = 65534;
+    if (user == 0 && ::seteuid(nobody_id) != 0) GTEST_SKIP() << "root may read everything";
     ASSERT_EQ(::seteuid(user), 0);
     std::filesystem::create_directory(folder / "closed");
     test::write_text(folder / "closed" / "file", "x");
     std::filesystem::permissions(folder / "closed", std::filesystem::perms::none);
     if (user == 0) {
-        ASSERT_EQ(::seteuid(nobody), 0);
+        ASSERT_EQ(::seteuid(nobody_id), 0);
     }
     EXPECT_EQ(reading(folder / "closed" / "file"), "closed/file: cannot be read: Permission denied");
     EXPECT_EQ(open_error(folder / "closed" / "file"), std::errc::permission_denied);
@@ -112,7 +112,7 @@ TEST(ProgramFiles, AreWhereTheVariableSays) {
 }
 
 TEST(ProgramFiles, StandInShareBesideTheFolderOfTheProgram) {
-    // This test lies in tests/ of the build, whose share/ is that of the programs in bin/.
+    // This test is in tests/ of the build, whose share/ is that of the programs in bin/.
     EXPECT_EQ(executable_folder().filename(), "tests");
     const auto folder = data_folder("docs", variable, "the pages");
     EXPECT_TRUE(std::filesystem::equivalent(folder, test::source_dir() / "docs"));
@@ -141,7 +141,7 @@ TEST(FileKinds, OneTakenForAnotherIsNamed) {
     EXPECT_EQ(refused(" \n", FileKind::mission),
               "f: is empty, expected a mission; write one with `flightwatt new-mission`");
     EXPECT_EQ(refused(pack, FileKind::battery), "");
-    EXPECT_EQ(refused("unknown = 1", FileKind::battery), "") << "its reader says what is missing";
+    EXPECT_EQ(refused("unknown = 1", FileKind::battery), "") << "its reader states what is missing";
     EXPECT_EQ(refused("time_s,power_w\n1,2\n", FileKind::log), "") << "a series";
 }
 

@@ -24,7 +24,7 @@ BatchFit some_fit() {
     options.weighting = mechanical::Weighting::uniform;
     auto fit = fit_flights(samples, options);
     fit.excluded = {"other"};
-    fit.keep = {"doubtful"};
+    fit.keep = {"uncertain"};
     fit.model.validation = mechanical::ModelValidation{"fourier", {{"fourier", 3, 2.5}}};
     return fit;
 }

@@ -48,7 +48,7 @@ class BatchOfTwo : public testing::Test {
         whole = contents(out);
     }
 
-    /// The same beside files of the user's.
+    /// The same next to files of the user's.
     void expect_redone_beside(const std::vector<std::string>& others, const std::vector<std::string>& names) {
         EXPECT_EQ(done_anew(batch(in, out)), names);
         auto left = contents(out);
@@ -81,12 +81,12 @@ TEST_F(BatchOfTwo, WritesThreeFilesAFlight) {
 TEST_F(BatchOfTwo, DoesNothingTwice) { expect_redone({}); }
 
 TEST_F(BatchOfTwo, RemembersWhatAFitTakes) {
-    const auto anew = samples_of(batch(in, folder / "other"), folder / "other");
+    const auto again = samples_of(batch(in, folder / "other"), folder / "other");
     const auto remembered = samples_of(batch(in, out), out);
-    ASSERT_EQ(anew.size(), 2U);
+    ASSERT_EQ(again.size(), 2U);
     ASSERT_EQ(remembered.size(), 2U);
     for (std::size_t i = 0; i < remembered.size(); ++i) {
-        const auto& a = anew[i].samples;
+        const auto& a = again[i].samples;
         const auto& b = remembered[i].samples;
         EXPECT_EQ(a.flight, b.flight);
         for (const auto phase : flight::all_phases) {
@@ -188,7 +188,7 @@ TEST_F(BatchOfTwo, KeepsTheResultsOfALogThatIsGone) {
     EXPECT_EQ(samples_of(kept, out).at(0).samples.phases[flight::Phase::cruise]->power_w,
               before.samples.phases[flight::Phase::cruise]->power_w);
     EXPECT_EQ(contents(out), whole);
-    // What was changed since is not believed, and not thrown away either.
+    // What was changed since is not accepted, and not thrown away either.
     auto changed = whole.at("flights/opterra_synthetic_01.record.json");
     changed.replace(changed.find("0."), 2, "9.");
     write_text(flights / "opterra_synthetic_01.record.json", changed);

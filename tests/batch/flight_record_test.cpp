@@ -81,7 +81,7 @@ TEST(FlightRecord, SurvivesJson) {
     EXPECT_EQ(motion.bins[2].samples, 27U);
 }
 
-/// As a record would be written that says this: with a seal that is right.
+/// As a record would be written that states this: with a seal that is right.
 std::string sealed(nlohmann::ordered_json json) {
     json.erase("seal");
     auto text = json.dump(1);

@@ -1,4 +1,4 @@
-// The program itself, killed and interrupted in the middle of a batch: what it ends with must not tell.
+// The program itself, killed and interrupted in the middle of a batch: what it ends with must not show.
 
 #include "helpers/running_program.h"
 #include "helpers/sample_logs.h"
@@ -38,7 +38,7 @@ class KilledBatch : public testing::Test {
         }
     }
 
-    /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it says goes to the file stderr.
+    /// Starts `flightwatt-batch in -o OUT --jobs JOBS`; what it states goes to the file stderr.
     ::pid_t start(const std::string& out, unsigned jobs) {
         return test::start_program("flightwatt-batch", {"in", "-o", out, "--jobs", std::to_string(jobs)}, folder);
     }
@@ -59,7 +59,7 @@ class KilledBatch : public testing::Test {
     }
 
     /// Starts a batch and sends it a signal a little after it has `done` records. Returns its status, which is 0 where
-    /// a busy machine let the batch end first.
+    /// on a busy machine the batch ended first.
     int stop_after(const std::string& out, int done, int signal) {
         const auto child = start(out, 1);
         for (int look = 0; records(out) < done && look < 600000; ++look) {
@@ -87,7 +87,7 @@ TEST_F(KilledBatch, EndsWithTheSameBytesAfterKills) {
             EXPECT_TRUE(whole.contains(name) || name.starts_with(temporary_folder)) << name << " is in no list";
         }
     }
-    EXPECT_GE(killed, 1);  // a machine that looks away for long enough may let one finish
+    EXPECT_GE(killed, 1);  // a machine that looks away for long enough may allow one to finish
     EXPECT_EQ(test::wait_status_of(start("out", 2)), 0);
     EXPECT_EQ(contents(folder / "out"), whole);
 }

@@ -130,9 +130,9 @@ TEST(FindLogs, ShortensNamesThatFilesCannotHave) {
 TEST(FindLogs, KeepsLinksToNowhereToBeReported) {
     const auto folder = test::scratch_dir();
     touch(folder / "good.data");
-    std::filesystem::create_symlink("nowhere", folder / "gone.data");
+    std::filesystem::create_symlink("nowhere", folder / "absent.data");
     std::filesystem::create_symlink("loop.data", folder / "loop.data");
-    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("gone", "good", "loop"));
+    EXPECT_THAT(names(find_logs({folder.string()})), ElementsAre("absent", "good", "loop"));
 }
 
 TEST(FindLogs, RefusesWhatIsNotThere) {
@@ -187,8 +187,8 @@ TEST(ListedPaths, AreLinesAsTheyStand) {
 TEST(FindLogs, TakesWhatIsListedAsItIs) {
     const auto folder = test::scratch_dir();
     const auto there = touch(folder / "there.data").string();
-    const auto gone = (folder / "gone.data").string();
-    EXPECT_THAT(names(find_logs({}, {there, gone})), ElementsAre("gone", "there"));
+    const auto absent = (folder / "absent.data").string();
+    EXPECT_THAT(names(find_logs({}, {there, absent})), ElementsAre("absent", "there"));
     EXPECT_THAT(names(find_logs({there}, {there})), ElementsAre("there"));
     EXPECT_THAT(names(find_logs({}, {folder.string()})), ElementsAre("there"));
 }

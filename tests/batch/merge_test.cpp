@@ -46,7 +46,7 @@ MergePlan merge(const Paths& batches, const std::filesystem::path& out, bool pru
     return plan;
 }
 
-/// The files that are not alike. EXPECT_EQ of their texts would take all memory to show how.
+/// The files that are not equal. EXPECT_EQ of their texts would take all memory to show how.
 std::vector<std::string> differing(const std::map<std::string, std::string>& one,
                                    const std::map<std::string, std::string>& other) {
     std::vector<std::string> names;
@@ -57,7 +57,7 @@ std::vector<std::string> differing(const std::map<std::string, std::string>& one
     return names;
 }
 
-/// Logs of equal names, one that is a copy of another, one that is none, and two with two recordings.
+/// Logs of equal names, one that is a copy of another, one that is no log, and two with two recordings.
 Paths make_logs(const std::filesystem::path& folder) {
     Paths logs;
     for (int i = 1; i <= 4; ++i) logs.push_back(test::copy_sample(i, folder / "a"));
@@ -132,8 +132,8 @@ TEST(Merge, AgainDoesNothingAndABatchGoesOnFromIt) {
     EXPECT_THAT(test::done_anew(done), IsEmpty());
     const auto before = test::contents(scratch / "one");
     options.load.segmentation.cruise_fraction = 0.8;
-    const auto anew = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
-    EXPECT_EQ(test::done_anew(anew).size(), 4U);
+    const auto again = run_batch(plan.logs, options, [](std::size_t, std::size_t, const BatchFlight&) {});
+    EXPECT_EQ(test::done_anew(again).size(), 4U);
     EXPECT_THAT(differing(test::contents(scratch / "one"), before), IsEmpty());
 }
 

@@ -1,4 +1,4 @@
-// The project's promise, from end to end: the sample logs give the paper's Table I back, however they are
+// The project's claim, from end to end: the sample logs give the paper's Table I back, however they are
 // kept.
 
 #include "helpers/sample_logs.h"
@@ -74,9 +74,9 @@ TEST(RealLogs, GiveTheSameModelRememberedAsAnew) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto folder = test::scratch_dir();
     const auto flights = test::shared_dir() / "flights";
-    const auto anew = to_toml(fit_of(test::batch(flights, folder), folder));
-    EXPECT_THAT(anew, testing::HasSubstr("flights = 3"));
-    EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder), folder)), anew);
+    const auto again = to_toml(fit_of(test::batch(flights, folder), folder));
+    EXPECT_THAT(again, testing::HasSubstr("flights = 3"));
+    EXPECT_EQ(to_toml(fit_of(test::batch(flights, folder), folder)), again);
 }
 
 TEST(SampleLogs, GiveTheSameModelWithAnyNumberOfJobs) {
@@ -160,7 +160,7 @@ TEST(RealFlights, GoThroughTheWholeBatch) {
                                          {"20_07_10__06_53_03", 321, 1100, 22.0}};
     std::size_t found = 0;
     for (const auto& flight : flights) {
-        // The other two measured no current, and one of them stands still.
+        // The other two measured no current, and one of them does not move.
         const bool measured = flight.record.flight.starts_with("20_07_");
         EXPECT_EQ(flight.record.accepted, measured || flight.record.flight.starts_with("17_07_"));
         EXPECT_EQ(flight.record.accepted && flight.record.no_power_reason.empty(), measured) << flight.record.flight;

@@ -54,20 +54,20 @@ TEST(Battery, CannotDeliverBeyondItsLimit) {
 TEST(BatteryWarnings, TellOfUnitsThatNoPackHas) {
     const Battery sound{"pack", 11.1, 0.05, 3.2};
     EXPECT_TRUE(battery_warnings(sound).empty());
-    const auto said = [&](double Battery::*what, double value) {
+    const auto printed = [&](double Battery::*what, double value) {
         auto battery = sound;
         battery.*what = value;
         const auto warnings = battery_warnings(battery);
         return warnings.size() == 1 ? warnings.front() : "";
     };
-    EXPECT_EQ(said(&Battery::capacity_ah, 0.049),
+    EXPECT_EQ(printed(&Battery::capacity_ah, 0.049),
               "battery: 0.049 Ah is too small for a drone's pack: check that the unit is Ah");
-    EXPECT_EQ(said(&Battery::capacity_ah, 0.051), "");
-    EXPECT_EQ(said(&Battery::voltage_v, 111.0),
+    EXPECT_EQ(printed(&Battery::capacity_ah, 0.051), "");
+    EXPECT_EQ(printed(&Battery::voltage_v, 111.0),
               "battery: 111 V when full is more than 14 LiPo cells': check that the unit is V");
-    EXPECT_EQ(said(&Battery::voltage_v, 1.11),
+    EXPECT_EQ(printed(&Battery::voltage_v, 1.11),
               "battery: 1.11 V when full is less than one cell's: check that the unit is V");
-    EXPECT_EQ(said(&Battery::resistance_ohm, 50.0),
+    EXPECT_EQ(printed(&Battery::resistance_ohm, 50.0),
               "battery: it cannot deliver more than 0.616 W: check that resistance_ohm is in ohm");
 }
 

@@ -68,7 +68,7 @@ TEST(DischargeRecord, PassesOverBurstsWithoutThrottle) {
     auto record = record_of(series);
     EXPECT_FALSE(record.used.back());
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 1);
-    // A throttle that never moves tells nothing.
+    // A throttle that never moves shows nothing.
     std::fill(series.throttle_percent.begin(), series.throttle_percent.end(), 0.0);
     record = record_of(series);
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 0);

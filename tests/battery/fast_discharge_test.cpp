@@ -67,8 +67,7 @@ TEST(FastDischarge, IsExactOverAnyShortTime) {
 TEST(FastDischarge, PartsNoStepForEver) {
     std::mt19937_64 random(4713);
     const auto pack = drawn_pack(random);
-    const double length_s =
-        0.5 * (1.0 + 4e-13);  // longer than the steps in which an end is looked for, but by rounding
+    const double length_s = 0.5 * (1.0 + 4e-13);  // longer than the steps in which an end is searched, but by rounding
     const auto after = fast_discharge(pack, {[](double) { return 30.0; }, 0.0, length_s}, {50.0, 0.0}, {20.0, 13.0});
     EXPECT_TRUE(after.ended_at_s()) << "below its cut-off from the start";
 }
@@ -82,15 +81,15 @@ TEST(FastDischarge, IsTheExactOneWithinItsTolerance) {
         Discharge exact{{uniform(random, 30.0, 100.0)}};
         auto quick = exact;
         double time_s = 0.0;
-        for (int stretch = 0; stretch < 12; ++stretch) {
-            const auto [load, step_s] = drawn_load(random, time_s, stretch % 2 == 0);
+        for (int segment = 0; segment < 12; ++segment) {
+            const auto [load, step_s] = drawn_load(random, time_s, segment % 2 == 0);
             const auto from = exact;
             exact = discharge(pack, load, from, {0.05, cutoff_v});
             const auto alone = fast_discharge(pack, load, from, {step_s, cutoff_v});
             // A flight that only just touches a limit may pass it in one of the two.
             if (exact.ended_at_s().has_value() != alone.ended_at_s().has_value() ||
                 exact.undeliverable.has_value() != alone.undeliverable.has_value()) {
-                ADD_FAILURE() << "pack " << pack_number << ", stretch " << stretch << ": one of them ends";
+                ADD_FAILURE() << "pack " << pack_number << ", segment " << segment << ": one of them ends";
                 break;
             }
             if (exact.ended_at_s() || exact.undeliverable) {
@@ -104,11 +103,11 @@ TEST(FastDischarge, IsTheExactOneWithinItsTolerance) {
                 EXPECT_NEAR(when(alone), when(exact), 0.2) << pack_number;
                 break;
             }
-            EXPECT_NEAR(alone.soc_percent, exact.soc_percent, 1e-3) << pack_number << ", " << stretch;
-            EXPECT_NEAR(alone.rc_voltage_v, exact.rc_voltage_v, 1e-3) << pack_number << ", " << stretch;
+            EXPECT_NEAR(alone.soc_percent, exact.soc_percent, 1e-3) << pack_number << ", " << segment;
+            EXPECT_NEAR(alone.rc_voltage_v, exact.rc_voltage_v, 1e-3) << pack_number << ", " << segment;
             quick = fast_discharge(pack, load, quick, {step_s, cutoff_v});
             if (quick.ended_at_s() || quick.undeliverable) break;
-            EXPECT_NEAR(quick.soc_percent, exact.soc_percent, 5e-3) << pack_number << ", " << stretch;
+            EXPECT_NEAR(quick.soc_percent, exact.soc_percent, 5e-3) << pack_number << ", " << segment;
             time_s = load.end_s;
         }
     }

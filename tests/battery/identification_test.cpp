@@ -134,7 +134,7 @@ TEST(Identification, AlignsFlightsByTheirVoltage) {
     EXPECT_GT(checks[1].extrapolated_percent, 20.0);  // its end was never flown before
 }
 
-/// Packs that begin at 40 to 100 %: capacity and initial charge lie within their intervals.
+/// Packs that begin at 40 to 100 %: capacity and initial charge are within their intervals.
 TEST(Identification, IntervalsHoldInitialChargeAndCapacity) {
     for (const auto curve : {test::PackCurve::known, test::PackCurve::polymer}) {
         const bool full = curve == test::PackCurve::polymer;

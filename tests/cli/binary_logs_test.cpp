@@ -40,7 +40,7 @@ class BinaryLogs : public testing::Test {
 
     test::ProgramResult run(const std::string& command) { return test::run_shell("flightwatt " + command, folder); }
 
-    /// What it prints, where a log's own name stands for both.
+    /// What it prints, where a log's own name represents both.
     std::string printed(const std::string& command) {
         const auto result = run(command);
         EXPECT_EQ(result.code, 0) << command << "\n" << result.err;

@@ -1,4 +1,4 @@
-// Completion in the shells themselves, and man pages: both are made of what the programs say of their options.
+// Completion in the shells themselves, and man pages: both are made of what the programs state of their options.
 
 #include "base/atomic_file.h"
 #include "helpers/running_program.h"

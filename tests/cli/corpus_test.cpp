@@ -1,5 +1,5 @@
 // Phases, energies and messages of real logs and of small inputs that once showed faults are those that are known of
-// them: every file of the corpus beside the project, by its own tool.
+// them: every file of the corpus next to the project, by its own tool.
 
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
@@ -13,7 +13,7 @@
 namespace flightwatt::cli {
 namespace {
 
-/// Files that are not right, with the reason. Whoever mends one removes it here.
+/// Files that are not right, with the reason. Who repairs one removes it here.
 const std::map<std::string, std::string> known_faults{};
 
 void expect_right(const std::string& folder) {

@@ -85,7 +85,7 @@ TEST(GoldenComparison, FailsOnAMissingOrAddedLine) {
     EXPECT_FALSE(passes(table + "\n"));
     EXPECT_FALSE(passes(table.substr(0, table.size() - 1)));
     EXPECT_FALSE(passes(""));
-    EXPECT_FALSE(passes("said\n", ""));
+    EXPECT_FALSE(passes("printed\n", ""));
 }
 
 TEST(GoldenComparison, FailsOnChangedBlanks) {
@@ -123,7 +123,7 @@ TEST(GoldenCase, ComparesEveryByteWhereItAsksForThat) {
 }
 
 TEST(GoldenCase, IsReadAsItIsWritten) {
-    const GoldenCase golden{"one\ntwo\n", true, {"3", "--- out\n\nx\n", "said\n"}};
+    const GoldenCase golden{"one\ntwo\n", true, {"3", "--- out\n\nx\n", "printed\n"}};
     const auto path = write_text(scratch_dir() / "a.case", to_text(golden));
     const auto read = read_golden_case(path);
     EXPECT_EQ(read.command, golden.command);

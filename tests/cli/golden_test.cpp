@@ -51,7 +51,7 @@ test::Outcome run_command(const std::string& command) {
                                         "LC_ALL=C COLUMNS=80 SOURCE=" + test::shell_quoted(source) +
                                             " HAZARDS=" + test::shell_quoted(test::hazards_dir()));
     const auto shown = [&](const std::string& text) {
-        // The scratch folder may lie in the source folder, so it goes first.
+        // The scratch folder may be in the source folder, so it is first.
         return replaced(replaced(text, folder.string(), "SCRATCH"), source.string(), "SOURCE");
     };
     return {result.code < 0 ? "killed" : std::to_string(result.code), shown(result.out), shown(result.err)};
@@ -66,7 +66,7 @@ TEST_P(GoldenRun, PrintsAndReturnsWhatIsExpected) {
     if (regenerating()) {
         golden.expected = outcome;
         if (!differing.empty()) write_file_atomically(case_file(GetParam()), to_text(golden));
-        GTEST_SKIP() << (differing.empty() ? "unchanged: " : "written anew: ") << case_file(GetParam());
+        GTEST_SKIP() << (differing.empty() ? "unchanged: " : "written again: ") << case_file(GetParam());
     }
     const auto& expected = golden.expected;
     const auto compared = [&](const std::string& actual, const std::string& wanted) {
@@ -80,7 +80,7 @@ TEST_P(GoldenRun, PrintsAndReturnsWhatIsExpected) {
 
 INSTANTIATE_TEST_SUITE_P(Cli, GoldenRun, testing::ValuesIn(case_names()), [](const auto& run) { return run.param; });
 
-/// Another file there would never be looked at.
+/// Another file there would never be read.
 TEST(Golden, HoldsCasesAlone) {
     for (const auto& entry : std::filesystem::directory_iterator(golden_dir())) {
         EXPECT_EQ(entry.path().extension(), ".case") << entry.path();
@@ -108,10 +108,10 @@ TEST(Golden, RejectsBadInputsInOneLine) {
         if (!name.starts_with("bad_")) continue;
         const auto expected = test::read_golden_case(case_file(name)).expected;
         EXPECT_EQ(expected.exit_code, "3") << name;
-        const auto& said = expected.stderr_text;
-        EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << name;
-        EXPECT_NE(said.find(": error: "), std::string::npos) << name;
-        EXPECT_EQ(said.find("internal"), std::string::npos) << name;
+        const auto& printed = expected.stderr_text;
+        EXPECT_EQ(std::count(printed.begin(), printed.end(), '\n'), 1) << name;
+        EXPECT_NE(printed.find(": error: "), std::string::npos) << name;
+        EXPECT_EQ(printed.find("internal"), std::string::npos) << name;
         EXPECT_EQ(expected.stdout_text.find("result"), std::string::npos) << name;
         EXPECT_EQ(expected.stdout_text.find("made"), std::string::npos) << name;
     }

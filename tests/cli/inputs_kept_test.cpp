@@ -22,7 +22,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A command, with the files that it reads and the names that its outputs go to. OUT stands for the output.
+/// A command, with the files that it reads and the names that its outputs go to. OUT represents the output.
 struct Command {
     std::string stage;
     std::string arguments;  ///< with all files that the stage can name

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The JSON of every stage is as its --json-schema says: json_schema_test.py FOLDER_OF_PROGRAMS.
+"""The JSON of every stage is as its --json-schema states: json_schema_test.py FOLDER_OF_PROGRAMS.
 
 The commands of tests/cli/golden that print JSON are run, and COMMANDS for stages and options that are in none of them,
 with a `flightwatt` that keeps what it prints. Skipped (77) without python3-jsonschema.

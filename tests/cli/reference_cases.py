@@ -1,5 +1,5 @@
 """The commands whose outputs scripts/reference keeps. A case is a name and a script for sh; it runs in a folder of its
-own with $SOURCE (the project) and $SHARED (real logs; cases that need it are left out without), beside a link to the
+own with $SOURCE (the project) and $SHARED (real logs; cases that need it are left out without), next to a link to the
 latter as ../shared. What it prints and what it writes into its folder is kept."""
 
 import os

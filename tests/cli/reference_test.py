@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds scripts/reference to what it is for: reference_test.py BIN. Two runs are alike, and what is changed is found."""
+"""Holds scripts/reference to what it is for: reference_test.py BIN. Two runs are equal, and what is changed is found."""
 
 import base64
 import importlib.machinery

@@ -248,7 +248,7 @@ TEST_F(Robustness, Case07WarnsOfAPhaseThatIsNotAsItsCounter) {
     }));
     EXPECT_EQ(thin.result.code, 0);
     EXPECT_THAT(thin.warnings(), testing::Contains(AllOf(ContainsRegex("take-?off"), HasSubstr("count"))));
-    EXPECT_GT(thin.gaps_of_takeoff, 0U) << "counted in time, however seldom there are samples";
+    EXPECT_GT(thin.gaps_of_takeoff, 0U) << "counted in time, however rarely there are samples";
 }
 
 TEST_F(Robustness, Case13WarnsOfDropouts) {

@@ -1,5 +1,5 @@
-// What the programs say of a log does not depend on the way it comes: as a log or as its series file; and what
-// predict says of a moment does not depend on what the log wrote later.
+// What the programs state of a log does not depend on the way it comes: as a log or as its series file; and what
+// predict states of a moment does not depend on what the log wrote later.
 
 #include "base/atomic_file.h"
 #include "helpers/cut_logs.h"
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 const std::vector<std::string> real_flights{"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"};
 
-/// Every log of `logs`, and beside it its series file under another name.
+/// Every log of `logs`, and next to it its series file under another name.
 struct BothWays {
     std::string logs;
     std::string series;
@@ -99,7 +99,7 @@ TEST(SameOnEveryWay, SegmentsEveryLog) {
     }
 }
 
-/// Changes of what a log says after a moment.
+/// Changes of what a log states after a moment.
 std::vector<std::string> changed_after(const std::string& text, double moment_s) {
     const auto cut = test::cut_log(text, moment_s);
     std::vector<std::string> changed{cut.before};

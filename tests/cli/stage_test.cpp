@@ -146,10 +146,10 @@ TEST(RunStage, RefusesWrongUsage) {
 }
 
 TEST(RunStage, TurnsExceptionsIntoALineAndAnExitCode) {
-    const auto result = run({"a"}, failing_with(InputError({"f.csv", 12, 7}, "is wrong", "mend it")));
+    const auto result = run({"a"}, failing_with(InputError({"f.csv", 12, 7}, "is wrong", "repair it")));
     EXPECT_EQ(result.code, 3);
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err, "flightwatt-trial: f.csv:12:7: error: is wrong; mend it\n");
+    EXPECT_EQ(result.err, "flightwatt-trial: f.csv:12:7: error: is wrong; repair it\n");
     const auto nowhere = run({"a"}, failing_with(InputError({}, "is wrong")));
     EXPECT_EQ(nowhere.err, "flightwatt-trial: error: is wrong\n");
     EXPECT_EQ(run({"a"}, failing_with(UsageError("x"))).code, 2);

@@ -41,7 +41,7 @@ TEST(CommitSource, HasTheCommitOfARepositoryOfItsOwnAlone) {
     git("-C outer commit --quiet --allow-empty --message first");
     const auto known = HasSubstr("commit() { return \"" + git("-C outer rev-parse --short HEAD") + "\"; }");
     EXPECT_THAT(commit_source(folder / "outer"), known);
-    EXPECT_THAT(commit_source(folder / "outer/unpacked"), unknown) << "it only lies in a repository";
+    EXPECT_THAT(commit_source(folder / "outer/unpacked"), unknown) << "it only is in a repository";
     git("-C outer worktree add --quiet ../worktree");  // .git is a file there
     EXPECT_THAT(commit_source(folder / "worktree"), known);
 }

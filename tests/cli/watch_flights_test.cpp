@@ -48,7 +48,7 @@ class WatchFlights : public testing::Test {
         return test::start_program("flightwatt-watch", source, folder);
     }
 
-    std::string said() const {
+    std::string printed() const {
         const auto file = folder / "stdout";
         return std::filesystem::exists(file) ? read_file(file) : "";
     }
@@ -61,14 +61,14 @@ class WatchFlights : public testing::Test {
     /// Ends a watch that has seen the end of the flight, which lasts until then on its clock; its last prediction.
     Json ended(::pid_t watching, double until_s) const {
         EXPECT_TRUE(test::wait_until([&] {
-            const auto lines = said();
+            const auto lines = printed();
             if (!lines.ends_with("}\n")) return false;
             const auto now = last_object(lines);
             return now.at("time_since_message_s").get<double>() > 0.0 && now.at("time_s").get<double>() >= until_s;
         }));
         ::kill(watching, SIGTERM);
         EXPECT_EQ(test::exit_code_of(watching), 0) << read_file(folder / "stderr");
-        return last_object(said()).at("last_prediction").at("prediction");
+        return last_object(printed()).at("last_prediction").at("prediction");
     }
 
     Json predicted(const std::string& log, double until_s) const {

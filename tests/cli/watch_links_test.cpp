@@ -55,7 +55,7 @@ class WatchLinks : public testing::Test {
         EXPECT_EQ(played.code, 0) << played.err;
         const auto until_s = expected.at("until_s").get<double>();
         std::size_t seconds = 0;
-        EXPECT_TRUE(test::wait_until([&] {  // until it says nothing new: it has seen the end, and silence
+        EXPECT_TRUE(test::wait_until([&] {  // until it states nothing new: it has seen the end, and silence
             const auto text = read_file(folder / "watched");
             const auto last = text.rfind("\n{");
             const auto now = last == std::string::npos ? text : text.substr(last + 1);

@@ -1,4 +1,4 @@
-// flightwatt watch as it runs beside a flight: a log that grows, signals, a reader that leaves.
+// flightwatt watch as it runs next to a flight: a log that grows, signals, a reader that leaves.
 
 #include "base/atomic_file.h"
 #include "helpers/running_program.h"
@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string said(const std::filesystem::path& folder) {
+std::string printed(const std::filesystem::path& folder) {
     const auto file = folder / "stdout";
     return std::filesystem::exists(file) ? read_file(file) : "";
 }
@@ -40,7 +40,7 @@ TEST(Watch, FollowsALogThatGrowsAndEndsBySignalWithItsLastWords) {
          (source / "fits/mechanical/synthetic-wing.toml").string(), "--remaining", "100", "--battery",
          (source / "fits/battery/synthetic-3s.toml").string(), "--record", "kept", "--silence-s", "1"},
         folder);
-    EXPECT_TRUE(test::wait_until([&] { return said(folder).find("cruise") != std::string::npos; }));
+    EXPECT_TRUE(test::wait_until([&] { return printed(folder).find("cruise") != std::string::npos; }));
     append(folder / "a.data", log.substr(half / 2, half - half / 2));
     const auto lines_in = [](const std::string& text) { return std::ranges::count(text, '\n'); };
     const auto kept_lines = [&] {
@@ -51,11 +51,12 @@ TEST(Watch, FollowsALogThatGrowsAndEndsBySignalWithItsLastWords) {
         return lines;
     };
     EXPECT_TRUE(test::wait_until([&] { return kept_lines() == lines_in(log.substr(0, half)); }));
-    EXPECT_TRUE(test::wait_until([&] { return said(folder).find("nothing was received for") != std::string::npos; }));
+    EXPECT_TRUE(
+        test::wait_until([&] { return printed(folder).find("nothing was received for") != std::string::npos; }));
     ::kill(child, SIGTERM);
     EXPECT_EQ(test::exit_code_of(child), 0);
     EXPECT_THAT(read_file(folder / "stderr"), HasSubstr("ended by SIGTERM"));
-    const auto words = said(folder);
+    const auto words = printed(folder);
     EXPECT_THAT(words, HasSubstr("\nremaining "));
     EXPECT_THAT(words, HasSubstr(" at landing, "));
     std::size_t kept = 0;

@@ -1,4 +1,4 @@
-// Sensor trees as the boards' kernels lay them out, made by the test.
+// Sensor trees as the boards' kernels arrange them, made by the test.
 
 #include "compute/power_sampler.h"
 
@@ -130,7 +130,7 @@ TEST_F(SensorTree, RaplCountsPackagesOnce) {
     const auto sampler = open_sampler(settings());
     EXPECT_EQ(sampler.kind, SamplerKind::rapl);
     const auto before = std::chrono::steady_clock::now();
-    EXPECT_TRUE(sampler.read().empty());  // a counter says nothing alone
+    EXPECT_TRUE(sampler.read().empty());  // a counter states nothing alone
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     zone("intel-rapl:0", "package-0", "100000");  // wrapped: 0.2 J
     zone("intel-rapl:0:0", "core", "90000");

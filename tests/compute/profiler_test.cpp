@@ -50,7 +50,7 @@ class Profiler : public testing::Test {
     }
 };
 
-/// A meter that tells 2 W, or what a component writes into a file named `busy`. A busy machine needs its time to start
+/// A meter that shows 2 W, or what a component writes into a file named `busy`. A busy machine needs its time to start
 /// either: powers of a component that does are compared in the study alone.
 constexpr const char* meter =
     "idle_s = 1\nduration_s = 1\n[sampler]\ninterval_s = 0.02\n"
@@ -170,7 +170,7 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
     EXPECT_THAT(text("stderr"), HasSubstr("[3/5] a n="));
     EXPECT_EQ(text("out/layer1/idle/repeat_1.csv"), idle);
     EXPECT_EQ(table("out/a.csv").rows.size(), 4U);
-    // A configuration that has changed is done anew, the others are not.
+    // A configuration that has changed is done again, the others are not.
     spec.replace(spec.find("[1, 2, 3, 4]"), 12, "[1, 2, 3, 5]");
     write("p.toml", spec);
     ASSERT_EQ(profile("p.toml"), 0);
@@ -179,7 +179,7 @@ TEST_F(Profiler, CtrlCLeavesNothingAndIsResumed) {
 }
 
 /// A component that burns a random share of the processor and keeps account of it, and a meter of 5 W plus
-/// 10 W times the share that the kernel says it got. It needs a processor of its own: a busy machine gives it too few
+/// 10 W times the share that the kernel states it got. It needs a processor of its own: a busy machine gives it too few
 /// slots to compare.
 TEST_F(ProfilerStudy, IsWithinItsStandardErrorOfALoadThatIsKnown) {
     write("load.py", R"(

@@ -5,11 +5,11 @@
 
 With --binary they are written as the SD card of an aircraft writes them, and also damaged as its bytes are: by the
 definitions of their own .log and, where it is, of ../shared/pprzlink, with these as a capture of a link too. COUNT
-executions (10,000 if not said) over the logs of logs/, those of hazards/ of the build and, where it is,
+executions (10,000 by default) over the logs of logs/, those of hazards/ of the build and, where it is,
 ../shared/flights, or over those that are named. Of every execution: an allowed exit code, no finding of a sanitizer, no
-hang, no more than 1 GB, no NaN in a result, and an energy that lies within 5 % of the undamaged log's or is warned of.
+hang, no more than 1 GB, no NaN in a result, and an energy that is within 5 % of the undamaged log's or is warned of.
 Programs are those of build/sanitize/bin unless --programs names others. What fails goes to --keep, with its command; the exit code
-is then 1. The same seed (1 if not said) damages the same logs in the same way.
+is then 1. The same seed (1 by default) damages the same logs in the same way.
 
 `start`, `restart` and `follow` are `watch` from a random line on: by its standard input, with a clock that is set back
 in flight, and as it follows a binary log. 2,000 starts over real logs as they are:
@@ -75,7 +75,7 @@ def energy_wh(sorties):
 
 
 def time_of(line):
-    """Minus infinity where there is none."""
+    """Minus infinity without one."""
     try:
         return float(line.split(b" ", 1)[0])
     except ValueError:
@@ -87,7 +87,7 @@ def first_time(lines):
 
 
 def time_range(log):
-    """The first and the last time of a log: what is said of sorties outside of it cannot be asked for."""
+    """The first and the last time of a log: what is known of sorties outside of it cannot be asked for."""
     return first_time(log.lines), first_time(reversed(log.lines))
 
 
@@ -131,7 +131,7 @@ def commands_of(programs, log, folder, is_binary):
         "batch": run("batch", os.path.dirname(log), "-o", os.path.join(folder, "out"), "--jobs", "2"),
         "path": run("path", "--path-from", log),
         "play": run("play", log, "--to", "-", "--speed", "100000"),
-        "convert": run("convert", log),  # of a text log it says that there is nothing to convert
+        "convert": run("convert", log),  # of a text log it states that there is nothing to convert
     }
 
 
@@ -215,7 +215,7 @@ def damaged(original, seed, is_binary):
 
 
 def silent_energy_error(execution, reference, damage, log, folder):
-    """How far the energy is from that of the undamaged log, if nothing was said of it; empty if all is well."""
+    """How far the energy is from that of the undamaged log, if nothing was printed about it; empty if all is well."""
     sorties = reference["sorties"]
     if damage.removeprefix("frames_") in ("cut_off", "begun_late"):
         begin_s, end_s = time_range(log)
@@ -268,7 +268,7 @@ class Run:
         return as_binary(original, 2) if self.options.binary else original, "undamaged"
 
     def reference_of(self, original):
-        """What `segment` says of the undamaged log."""
+        """What `segment` states of the undamaged log."""
         with tempfile.TemporaryDirectory() as folder:
             log = write_log(as_binary(original, 2) if self.options.binary else original, folder)
             execution = Execution(self.commands(log, folder)["segment"], log, folder)

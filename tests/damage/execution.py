@@ -38,7 +38,7 @@ class Execution:
             self.messages = file.read()
 
     def warnings(self, folder):
-        """The lines that warn, without the place of the log; beside them rejections, which are no silence either."""
+        """The lines that warn, without the place of the log; next to them rejections, which are no silence either."""
         lines = self.messages.replace(folder.encode(), b"").splitlines()
         return {line for line in lines if b"warning:" in line or b"error:" in line or b"rejected" in line}
 

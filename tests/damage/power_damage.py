@@ -13,7 +13,7 @@ def energy_words(line):
 
 def change_power(random, log, change):
     """Current and power of ENERGY by change(number, seconds since the first); mostly its counters,
-    which the aircraft computes from the same, are lost: without them nothing else tells."""
+    which the aircraft computes from the same, are lost: without them nothing else shows."""
     without_counters = random.random() < 0.7
     first_s = None
     number = 0
@@ -50,7 +50,7 @@ def power_spikes(random, log):
 
 
 def current_drifts(random, log):
-    """Only the rest after the flight tells: a log that ends with the throttle open is left as it is."""
+    """Only the rest after the flight shows: a log that ends with the throttle open is left as it is."""
     last = next((energy_words(line) for line in reversed(log.lines) if message_of(line) == b"ENERGY"), [])
     if not last or not last[3].isdigit() or int(last[3]) > 20:
         return
@@ -84,7 +84,7 @@ DEVICES = {
 
 
 def one_device_fails(random, log):
-    """ENERGY told by several devices, of which one falls silent, reports nothing, or repeats its last value."""
+    """ENERGY reported by several devices, of which one falls silent, reports nothing, or repeats its last value."""
     message = random.choice(tuple(DEVICES))
     count = random.randrange(2, 7)
     kind = random.choice(("silent", "zero", "little", "frozen"))

@@ -32,7 +32,7 @@ def present(log, names):
 
 
 def a_message(random, log):
-    """Power messages twice as often: what they say matters most."""
+    """Power messages twice as often: what they state matters most."""
     names = present(log, POWER_MESSAGES) * 2 + present(log, OTHER_MESSAGES)
     return random.choice(names) if names else b"ENERGY"
 

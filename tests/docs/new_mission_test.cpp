@@ -1,4 +1,4 @@
-// A new mission holds every key of docs/missions.md, and each that it has as a comment is read once it is none.
+// A new mission holds every key of docs/missions.md, and each that it has as a comment is read once it is a key.
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -99,8 +99,8 @@ std::vector<std::pair<std::size_t, std::size_t>> blocks_of(const std::vector<std
     return blocks;
 }
 
-/// The text with one block taken out of its comment. What the comments say goes instead of it is left out: of a plan
-/// and a policy the schedule, of a utility the one that stands there, of a path the airspeed.
+/// The text with one block taken out of its comment. What the comments state goes instead of it is left out: of a plan
+/// and a policy the schedule, of a utility the one that is there, of a path the airspeed.
 std::string with_block(const std::vector<std::string>& lines, const std::pair<std::size_t, std::size_t>& block) {
     const auto& first = lines[block.first];
     const bool decides = first.starts_with("#[plan]") || first.starts_with("#[policy]");

@@ -20,7 +20,7 @@ namespace {
 
 using flight::Phase;
 
-/// The known pack of three cells with 2.4 Ah, and the wing that nobody built; a computer of 6 W.
+/// The known pack of three cells with 2.4 Ah, and the wing that no one built; a computer of 6 W.
 EstimatorInput known_input() {
     EstimatorInput input;
     input.battery = test::known_pack();
@@ -65,10 +65,10 @@ TEST(Px4, TellsTheChargeByItsOwnFormula) {
         const double rc_v = current_a * input.battery->thevenin->rc_resistance_ohm;
         const double cell_v = terminal_voltage_v(*input.battery, {soc, rc_v}, current_a) / 3.0;
         const double rest_v = cell_v + px4.at("BAT1_R_INTERNAL") * current_a;
-        const double told =
+        const double reported =
             100.0 * (rest_v - px4.at("BAT1_V_EMPTY")) / (px4.at("BAT1_V_CHARGED") - px4.at("BAT1_V_EMPTY"));
-        EXPECT_NEAR(told, soc, 20.0) << "a line through a curve";
-        sum_percent += told - soc;
+        EXPECT_NEAR(reported, soc, 20.0) << "a line through a curve";
+        sum_percent += reported - soc;
     }
     EXPECT_NEAR(sum_percent / 10.0, 0.0, 3.0) << "on average";
 }
@@ -105,7 +105,7 @@ TEST(Inav, HasPowersInHundredthsOfAWattAndTheEnergyInMilliwattHours) {
     EXPECT_EQ(inav.at("battery_capacity_unit"), "MWH");
     EXPECT_NEAR(number_or_nan(inav.at("battery_capacity")), 1000.0 * full_energy_wh(*input.battery), 0.51);
     EXPECT_EQ(inav.at("idle_power"), "600");
-    EXPECT_EQ(inav.at("cruise_power"), "2400") << "what the motor takes besides";
+    EXPECT_EQ(inav.at("cruise_power"), "2400") << "what the motor takes in addition";
     EXPECT_EQ(inav.at("nav_fw_cruise_speed"), "1320");
     EXPECT_EQ(inav.at("rth_energy_margin"), "20");
 }

@@ -110,7 +110,7 @@ TEST(CHeader, KeepsEveryTermOfAMotion) {
 TEST(CHeader, IsNotBrokenByAName) {
     auto model = model_file("opterra-table1");
     model.name = "20 Twin-Star */ \"\xC3\xA9?\?/";
-    model.description = "/* ends */ here ?\?/\nand goes on \\";
+    model.description = "/* ends */ here ?\?/\nand continues \\";
     EXPECT_EQ(c_prefix(model.name), "model_20_twin_star__________");
     EXPECT_EQ(printed_by(model, "p(model_20_twin_star___________duration_s(MODEL_20_TWIN_STAR___________CRUISE));\n"),
               std::vector<double>{model.phases[flight::Phase::cruise].duration_s});

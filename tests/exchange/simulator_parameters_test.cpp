@@ -24,7 +24,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// The known pack of three cells with 2.4 Ah, and the wing that nobody built, 24 W in cruise; a computer of 6 W.
+/// The known pack of three cells with 2.4 Ah, and the wing that no one built, 24 W in cruise; a computer of 6 W.
 EstimatorInput simulated_aircraft() {
     EstimatorInput input;
     input.battery = test::known_pack();
@@ -159,7 +159,7 @@ TEST(Px4Sitl, RefusesWhatItDoesNotTake) {
     EXPECT_THROW(to_px4_sitl(input), InputError) << "more than a day";
     input = simulated_aircraft();
     input.battery = battery::Battery{"ideal", 11.1, 0.03, 3.2};
-    EXPECT_THROW(to_px4_sitl(input), InputError) << "no voltage that tells the charge";
+    EXPECT_THROW(to_px4_sitl(input), InputError) << "no voltage that shows the charge";
     input = simulated_aircraft();
     input.model.reset();
     EXPECT_THROW(to_px4_sitl(input), InputError);

@@ -21,7 +21,7 @@ struct Replacement {
     std::string put;
 };
 
-/// Says of each file what xmllint says of it.
+/// Prints what xmllint states of each file.
 constexpr auto validate_json = R"(python3 -c '
 import json, sys, jsonschema
 validator = jsonschema.Draft7Validator(json.load(open(sys.argv[1])))
@@ -33,8 +33,8 @@ for name in sys.argv[2:]:
         print(name, "validates", file=sys.stderr)
 ' )";
 
-/// What is said of files with these texts; of a valid one "track_INDEX validates".
-std::string judged(const std::vector<std::string>& texts, const std::string& schema) {
+/// What xmllint prints of files with these texts; of a valid one "track_INDEX validates".
+std::string validated(const std::vector<std::string>& texts, const std::string& schema) {
     const auto folder = test::scratch_dir();
     std::string files;
     for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -58,7 +58,7 @@ std::vector<FlownTrack> tracks() {
 void expect_valid(std::string (*write)(const FlownTrack&), const std::string& schema) {
     std::vector<std::string> texts;
     for (const auto& track : tracks()) texts.push_back(write(track));
-    EXPECT_EQ(judged(texts, schema), "track_0 validates\ntrack_1 validates\n");
+    EXPECT_EQ(validated(texts, schema), "track_0 validates\ntrack_1 validates\n");
 }
 
 /// Damages that leave it XML or JSON: it is the schema that refuses them.
@@ -69,13 +69,13 @@ void expect_refused(const std::string& text, const std::string& schema, const st
         ASSERT_NE(at, std::string::npos) << found;
         texts.push_back(std::string(text).replace(at, found.size(), put));
     }
-    const auto said = judged(texts, schema);
+    const auto printed = validated(texts, schema);
     for (std::size_t i = 0; i < damages.size(); ++i) {
-        EXPECT_THAT(said, testing::HasSubstr(fmt::format("track_{}", i)));
-        EXPECT_THAT(said, testing::Not(testing::HasSubstr(fmt::format("track_{} validates", i))))
+        EXPECT_THAT(printed, testing::HasSubstr(fmt::format("track_{}", i)));
+        EXPECT_THAT(printed, testing::Not(testing::HasSubstr(fmt::format("track_{} validates", i))))
             << damages[i].found << " became " << damages[i].put;
     }
-    EXPECT_THAT(said, testing::Not(testing::HasSubstr("parser error")));
+    EXPECT_THAT(printed, testing::Not(testing::HasSubstr("parser error")));
 }
 
 TEST(TrackSchemas, HoldGeoJsonByRfc7946) {

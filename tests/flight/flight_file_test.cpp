@@ -191,7 +191,7 @@ TEST_F(Recordings, OfACsvByItsMapAreRead) {
     EXPECT_EQ(loaded.flights[1].series.start_clock_s, 20.0);
     EXPECT_EQ(power_track(loaded.flights[1].series).time_s.front(), 0.0);
     EXPECT_EQ(loaded.flights[0].phases.sorties.size(), 1U);
-    EXPECT_TRUE(loaded.flights[0].series.skipped.empty()) << "a repeated header is none";
+    EXPECT_TRUE(loaded.flights[0].series.skipped.empty()) << "a repeated header is no skipped line";
 }
 
 /// A recording on the ground.

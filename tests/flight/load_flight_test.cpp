@@ -95,7 +95,7 @@ TEST(LoadFlight, ReadsACsvOfAltitudeAlone) {
 }
 
 /// The flights of the archive without a current sensor, in the log's own seconds: where TAKEOFF was sent, and where
-/// the log says that the aircraft stands again (its altitude stays, its ground speed is that of a GPS at rest).
+/// the log states that the aircraft stands again (its altitude stays, its ground speed is that of a GPS at rest).
 TEST(LoadFlight, FindsEachFlightOfTheArchiveWithoutPower) {
     FLIGHTWATT_NEEDS_SHARED();
     struct Flown {
@@ -194,7 +194,7 @@ TEST(FlightFile, OfABinaryLogNeedsDefinitions) {
     EXPECT_EQ(load_flight(bare).phases.sorties.size(), 1u) << "bare.LOG is XML";
 }
 
-/// A damaged .log ends nothing where others stand in for it, and is warned of.
+/// A damaged .log ends nothing where others replace it, and is warned of.
 TEST(FlightFile, TakesNamedDefinitionsForADamagedLog) {
     const auto made = stored_on_card(test::source_dir() / "logs" / "opterra_synthetic_01.data", test::LinkVersion::v2);
     const auto sound = test::source_dir() / "logs" / "opterra_synthetic_01.log";

@@ -301,11 +301,11 @@ TEST(Segmentation, MatchesWhatWasReadOffPlotsOfTheRealFlights) {
         expect_sortie(phases.sorties[0], edges, 5.0);
         const auto& lift_off = phases.sorties[0].phases[0].start;
         ASSERT_TRUE(lift_off.takeoff_after_s.has_value());
-        EXPECT_LT(std::abs(*lift_off.takeoff_after_s), 3.0) << "TAKEOFF is a witness";
+        EXPECT_LT(std::abs(*lift_off.takeoff_after_s), 3.0) << "TAKEOFF is evidence";
     }
 }
 
-/// One random change of a track: it loses a part, keeps one alone, is thinned, stands still, is moved in time, or goes.
+/// One random change of a track: it loses a part, keeps one alone, is thinned, does not move, is moved in time, or goes.
 void disturb(Track& track, std::mt19937& random) {
     const auto size = track.time_s.size();
     const auto keep = [&](const auto& keeps) {
@@ -343,7 +343,7 @@ void disturb(Track& track, std::mt19937& random) {
     }
 }
 
-/// Whatever comes of the tracks: phases in order and finite, or an error that says what is missing.
+/// Whatever comes of the tracks: phases in order and finite, or an error that states what is missing.
 TEST(Segmentation, IsATotalFunctionOfAnyCutsOrdersAndGaps) {
     const auto log = test::source_dir() / "logs" / "opterra_synthetic_01.data";
     const auto series = read_candidates(FlightFile(log), std::nullopt).at(0);

@@ -21,7 +21,7 @@ FlightSeries series_of(const std::string& text) {
     return flight_series(parse_telemetry(text, "x.data", std::nullopt, flight_messages()), "20");
 }
 
-/// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands go on.
+/// Throttle 50 %, but for `manual_s` 0 as in manual mode, while the commands continue.
 FlightSeries with_commands(double manual_s, const std::string& commands, int until_s = 200) {
     std::string text;
     for (int i = 0; i <= 200; ++i) {
@@ -41,7 +41,7 @@ TEST(SelectedThrottle, IsTheCommandsWhereItIdlesInManualMode) {
     EXPECT_THAT(warnings_of(manual), Contains(HasSubstr("ENERGY.throttle is idle while COMMANDS.throttle is not for "
                                                         "30 s, first from 100 s: the latter is used there")));
     EXPECT_EQ(lowest(with_commands(29.0, "4800,-20,30")), 0.0) << "half a minute";
-    EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped says nothing";
+    EXPECT_EQ(lowest(with_commands(40.0, "4800,-20,30", 125)), 0.0) << "what stopped states nothing";
     EXPECT_EQ(lowest(with_commands(40.0, "1900,-20,30")), 0.0) << "less than any flight takes";
     EXPECT_NEAR(lowest(with_commands(40.0, "1930,-20,30")), 20.1, 0.01);
 }

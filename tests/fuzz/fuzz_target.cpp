@@ -15,7 +15,7 @@
 namespace flightwatt::fuzz {
 namespace {
 
-/// In memory, where there is such a folder; gone at the end.
+/// In memory, where there is such a folder; absent at the end.
 struct Folder {
     std::filesystem::path path;
 

@@ -1,4 +1,4 @@
-// The record of a log in a batch: as it is, and with the seal that makes the reader believe it.
+// The record of a log in a batch: as it is, and with the seal that makes the reader accept it.
 
 #include "base/fingerprint.h"
 #include "batch/flight_record.h"

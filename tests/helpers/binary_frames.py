@@ -68,7 +68,7 @@ def words_of(line):
 
 
 def message_of(words, messages, version):
-    """Header and fields. Throws where they are not as the message is defined, or that is none of telemetry."""
+    """Header and fields. Throws where they are not as the message is defined, or is no telemetry message."""
     kind, number, fields = messages[words[2]]
     if len(words) != len(fields) + 3 or kind != TELEMETRY:
         raise ValueError

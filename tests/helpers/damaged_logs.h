@@ -33,7 +33,7 @@ inline std::string damaged_sample(const std::function<void(Words&)>& damage, int
     return text;
 }
 
-/// What the programs make of a log's text beside the first sample's .log.
+/// What the programs make of a log's text next to the first sample's .log.
 inline flight::LoadedFlight examined(const std::string& text) {
     const auto log = sample(1, ".log");
     auto configuration = telemetry::parse_log_configuration(read_file(log), log);

@@ -46,7 +46,7 @@ Document read_document(const std::filesystem::path& path);
 std::vector<std::filesystem::path> all_documents();
 
 /// Whether a path like "components.detection.qos" is meant by "components.NAME.qos": words in capitals stand
-/// for any word. "[]" behind a word is not looked at.
+/// for any word. "[]" behind a word is not read.
 bool path_matches(const std::string& documented, const std::string& path);
 
 }  // namespace flightwatt::test

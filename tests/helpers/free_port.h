@@ -21,7 +21,7 @@ inline std::uint16_t free_udp_port() {
     }
 }
 
-/// Somebody has the port.
+/// Someone has the port.
 inline bool is_taken(std::uint16_t port) {
     boost::asio::io_context context;
     boost::system::error_code error;

@@ -16,8 +16,8 @@ struct GeneratedMission {
     std::string kind;  ///< for people
 };
 
-/// Missions of both battery kinds, of few and many flights, with and without fixed stretches, stated durations and
-/// spreads, cut-off voltages: whatever [uncertainty] and the models may say. Planned, they spend what they have.
+/// Missions of both battery kinds, of few and many flights, with and without fixed segments, stated durations and
+/// spreads, cut-off voltages: whatever [uncertainty] and the models may state. Planned, they spend what they have.
 class MissionGenerator {
   public:
     explicit MissionGenerator(unsigned seed) : random_(seed), thevenin_(seed % 2 == 0) {}

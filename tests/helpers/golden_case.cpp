@@ -143,9 +143,9 @@ std::string line_with_expected_numbers(std::string_view actual_line, std::string
     for (std::size_t i = 0; i < actual.size(); ++i) {
         bool adopt = i < expected.size() && actual[i].number && expected[i].number && close(actual[i], expected[i]);
         if (i < expected.size() && actual[i].blank && expected[i].blank) {
-            for (const auto beside : {i + 1, i == 0 ? actual.size() : i - 1}) {
-                adopt = adopt || (longer(beside) && actual[i].text.size() + actual[beside].text.size() ==
-                                                        expected[i].text.size() + expected[beside].text.size());
+            for (const auto neighbour : {i + 1, i == 0 ? actual.size() : i - 1}) {
+                adopt = adopt || (longer(neighbour) && actual[i].text.size() + actual[neighbour].text.size() ==
+                                                           expected[i].text.size() + expected[neighbour].text.size());
             }
         }
         text += adopt ? expected[i].text : actual[i].text;

@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/error_analysis.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
@@ -36,14 +38,14 @@ struct CoverageCase {
 };
 
 struct Coverage {
-    double covered = 0.0;          ///< part of the points of the curves that lay in their intervals
+    double covered = 0.0;          ///< part of the points of the curves that were in their intervals
     double a0_covered = 0.0;       ///< part of the intervals of a0 that held it
     double half_width_w = 0.0;     ///< of the curve's intervals: mean over the curve, median of the fits
     double a0_half_width_w = 0.0;  ///< median of the fits
     double curve_error_w = 0.0;    ///< root mean square over the curve, median of the fits
     double worst_curve_error_w = 0.0;
     std::size_t fits = 0;
-    std::size_t without_answer = 0;  ///< fits that did not converge, which say so and have no intervals
+    std::size_t without_answer = 0;  ///< fits that did not converge, which state so and have no intervals
 };
 
 /// Fits flights of the published phase and asks at 41 points of each curve whether the 95 % interval holds

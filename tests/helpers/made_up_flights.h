@@ -24,7 +24,7 @@ struct Recording {
     double lost_part = 0.0;  ///< of the samples
 };
 
-/// Samples of the phase's curve, stretched to the recording's duration, with white noise.
+/// Samples of the phase's curve, scaled to the recording's duration, with white noise.
 inline mechanical::PhaseSamples record(const mechanical::PhaseModel& phase, const Recording& recording,
                                        std::mt19937& random, const std::string& flight = "flight") {
     std::normal_distribution<double> noise(0.0, 1.0);
@@ -44,11 +44,11 @@ inline mechanical::PhaseSamples record(const mechanical::PhaseModel& phase, cons
 inline std::vector<mechanical::PhaseSamples> record_flights(flight::Phase phase, std::size_t count, double noise_w,
                                                             unsigned seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> stretch(0.92, 1.08);
+    std::uniform_real_distribution<double> scale(0.92, 1.08);
     const auto model = published_model().phases[phase];
     std::vector<mechanical::PhaseSamples> flights;
     for (std::size_t i = 0; i < count; ++i) {
-        const Recording recording{model.duration_s * stretch(random), 1.1, noise_w, 0.15};
+        const Recording recording{model.duration_s * scale(random), 1.1, noise_w, 0.15};
         flights.push_back(record(model, recording, random, "flight" + std::to_string(i + 1)));
     }
     return flights;

@@ -2,7 +2,7 @@
 
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/phase_fit.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 #include "mission/plan.h"
@@ -18,13 +18,13 @@
 
 namespace flightwatt::test {
 
-/// How promises from few flights are tried.
+/// How predictions from few flights are tried.
 struct PromiseTrial {
     std::size_t flights = 3;    ///< that the model is made of
     bool by_fit = false;        ///< the model is fitted to samples of power; else made of the flights' own curves
     bool by_plan = false;       ///< plan_mission keeps a reserve; else draw_landings finds one for a schedule
     bool as_if_known = false;   ///< the spread of few flights as if it were that of all, phases independent
-    double probability = 0.95;  ///< that is promised
+    double probability = 0.95;  ///< that is planned
     std::size_t new_flights = 200;
 };
 
@@ -35,9 +35,9 @@ inline constexpr std::array<const char*, 8> interval_quantities{
 /// Of each quantity, the share of the flights to come (of means: 0 or 1) whose truth is in the interval.
 using IntervalShares = std::array<double, interval_quantities.size()>;
 
-/// An aircraft that nobody knows: three phases whose levels, and in half of the seeds durations, differ between flights
+/// An aircraft that no one knows: three phases whose levels, and in half of the seeds durations, differ between flights
 /// by normal deviations, the phases' more or less together; its flights, models of them, and what flights to come make
-/// of the models' promises. Batteries are ideal, with a resistance, and Thevenin circuits.
+/// of the models' predictions. Batteries are ideal, with a resistance, and Thevenin circuits.
 class UnknownAircraft {
   public:
     explicit UnknownAircraft(unsigned seed, bool is_even = false) : random_(seed), kind_(seed % 3) {
@@ -51,33 +51,33 @@ class UnknownAircraft {
         durations_are_stated_ = !durations_differ;
     }
 
-    /// The share of flights to come that keep what was promised from flights so far; none without a plan.
+    /// The share of flights to come that keep what was planned from flights so far; none without a plan.
     std::optional<double> kept_share(const PromiseTrial& trial) {
         auto problem = problem_of(trial.by_fit ? fitted_model(trial.flights) : model(trial.flights));
-        mission::Mission promised;
+        mission::Mission planned;
         double least_percent = 0.0;
         if (trial.by_plan) {
             problem.setup.reserve_soc_percent = least_percent = reserve_percent();
             auto plan = plan_mission(problem, trial.probability);
             if (!plan.plan.feasible) return std::nullopt;
-            promised = plan.mission;
+            planned = plan.mission;
         } else {
-            promised = with_highest_quality(problem);
-            auto spreads = collect_uncertainty(promised.setup);
+            planned = with_highest_quality(problem);
+            auto spreads = collect_uncertainty(planned.setup);
             if (trial.as_if_known) spreads.joint.clear();
-            least_percent = draw_landings(promised, spreads).quantile_percent(trial.probability);
+            least_percent = draw_landings(planned, spreads).quantile_percent(trial.probability);
         }
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.new_flights; ++i)
-            if (land(promised, fly()).remaining_percent >= least_percent) ++kept;
+            if (land(planned, fly()).remaining_percent >= least_percent) ++kept;
         return static_cast<double>(kept) / static_cast<double>(trial.new_flights);
     }
 
     /// How often the intervals of a model, fitted to so many flights with that noise, hold flights to come.
     IntervalShares interval_shares(std::size_t flights, double noise_w, std::size_t new_flights) {
         const auto fitted = fitted_model(flights, noise_w);
-        const auto promised = with_highest_quality(problem_of(fitted));
-        const auto landings = draw_landings(promised, collect_uncertainty(promised.setup));
+        const auto planned = with_highest_quality(problem_of(fitted));
+        const auto landings = draw_landings(planned, collect_uncertainty(planned.setup));
         const Interval left_percent{landings.quantile_percent(0.975), landings.quantile_percent(0.025)};
         IntervalShares shares{};
         const double part = 1.0 / static_cast<double>(new_flights);
@@ -97,7 +97,7 @@ class UnknownAircraft {
                 flown_wh += energy_wh;
             }
             if (interval_95(total)->contains(flown_wh)) shares[6] += part;
-            if (contains(left_percent, land(promised, flown).remaining_percent)) shares[7] += part;
+            if (contains(left_percent, land(planned, flown).remaining_percent)) shares[7] += part;
         }
         return shares;
     }
@@ -232,15 +232,14 @@ class UnknownAircraft {
                                        full_energy_wh(mission.setup.battery));
     }
 
-    mission::FlightOutcome land(const mission::Mission& promised, const Flown& flown) const {
-        auto flight = promised.setup;
+    mission::FlightOutcome land(const mission::Mission& planned, const Flown& flown) const {
+        auto flight = planned.setup;
         flight.duration_s = flown.duration_s;
         for (const auto phase : flight::all_phases) {
             flight.mechanical->phases[phase].fourier = curve_of(phase, flown);
             flight.mechanical->phases[phase].duration_s = flown.duration_s[phase];
         }
-        const auto schedule =
-            rescale_to_flown_durations(promised.schedule, promised.setup.duration_s, flown.duration_s);
+        const auto schedule = rescale_to_flown_durations(planned.schedule, planned.setup.duration_s, flown.duration_s);
         return mission::simulate_flight({flight, load_segments(flight, schedule)});
     }
 
@@ -255,7 +254,7 @@ class UnknownAircraft {
     const std::vector<double> fps_{1.0, 5.0, 10.0, 16.0, 25.0, 32.0};
 };
 
-/// What became of promises.
+/// What became of predictions.
 struct KeptPromises {
     double share = 0.0;  ///< of new flights, averaged over the models that had a plan
     double standard_error = 0.0;

@@ -13,7 +13,7 @@
 namespace flightwatt::test {
 
 /// A record of a sample a second, of which the first and last hundred are on the ground, that is sound: 20 W in flight,
-/// 0.4 W at rest, no two neighbours alike.
+/// 0.4 W at rest, no two neighbours equal.
 inline flight::PowerRecord sound_record(std::size_t flown = 1000) {
     constexpr std::size_t ground = 100;
     flight::PowerRecord record;

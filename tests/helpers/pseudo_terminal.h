@@ -13,7 +13,7 @@
 
 namespace flightwatt::test {
 
-/// A serial line with somebody at its other end.
+/// A serial line with someone at its other end.
 class PseudoTerminal {
   public:
     /// `link` becomes its name.

@@ -39,7 +39,7 @@ inline mechanical::MeasuredFlight flight_with_power(const std::string& name, con
     return flight;
 }
 
-/// A flight of which the model says all: its power times a factor, in phases that take so many parts of the mission's.
+/// A flight of which the model states all: its power times a factor, in phases that take so many parts of the mission's.
 inline mechanical::MeasuredFlight flight_of_model(const std::string& name, const mission::MissionSetup& mission,
                                                   double factor = 1.0, double duration_part = 1.0,
                                                   double step_s = 0.5) {

@@ -114,8 +114,8 @@ int run_program(const std::string& name, const std::vector<std::string>& argumen
 
 int processes_with(const std::string& marker) {
     int count = 0;
-    std::error_code gone;
-    for (std::filesystem::directory_iterator it("/proc", gone), end; it != end; it.increment(gone)) {
+    std::error_code absent;
+    for (std::filesystem::directory_iterator it("/proc", absent), end; it != end; it.increment(absent)) {
         std::ifstream file(it->path() / "cmdline");
         // A process may end while it is read; getline then fails, an iterator on the buffer would throw.
         constexpr char no_separator = '\1';

@@ -66,7 +66,7 @@ inline std::string text_of(const TextWriter& write) {
     return text;
 }
 
-/// The flights that were done anew.
+/// The flights that were done again.
 inline std::vector<std::string> done_anew(const batch::BatchFlights& flights) {
     std::vector<std::string> names;
     for (const auto& flight : flights) {

@@ -23,7 +23,7 @@ struct SmallMission {
 };
 
 /// Missions of four to nine slots with two or three components, on Thévenin batteries of all sorts: with and without
-/// dwell times, cut-off voltages, fixed stretches, reserves and a full pack.
+/// dwell times, cut-off voltages, fixed segments, reserves and a full pack.
 class SmallMissionGenerator {
   public:
     explicit SmallMissionGenerator(unsigned seed) : random_(seed) {}
@@ -163,7 +163,7 @@ class SmallMissionGenerator {
 inline SmallMission small_mission(unsigned seed) { return SmallMissionGenerator(seed).make(); }
 
 /// Every schedule of a mission of few slots, as the discharge of the battery has it. Left out is only what something
-/// else that may go on alike has more charge, less RC voltage and more utility than.
+/// else that may continue in the same way has more charge, less RC voltage and more utility than.
 class EverySchedule {
   public:
     EverySchedule(const mission::PlanningProblem& problem, const mission::PlanningTables& planner)
@@ -175,7 +175,7 @@ class EverySchedule {
     }
 
     /// The most utility a second of those that land with the reserve; none if none does. Only what has more than
-    /// `known` is looked for, if that is the utility of one that does.
+    /// `known` is searched, if that is the utility of one that does.
     std::optional<double> max_utility(std::optional<double> known = std::nullopt) const {
         std::map<Run, std::vector<State>> now{{Run{}, {State{problem_.setup.initial_soc_percent, 0.0, 0.0}}}};
         double duration_s = 0.0;

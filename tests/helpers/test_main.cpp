@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     const auto filter = GTEST_FLAG_GET(filter);
     if (filter == "*" || filter.starts_with('-')) {
         const auto names = tests_of(file, studies);
+        if (names.empty() && studies) return 0;  // most modules have none
         if (names.empty()) {
             fmt::print(stderr, "error: no test in '{}'\n", file);
             return 2;

@@ -5,7 +5,7 @@
 
 namespace flightwatt::test {
 
-// The only file that knows where the project lies: the others are compiled alike in every clone.
+// The only file that knows where the project is: the others are compiled the same in every clone.
 std::filesystem::path source_dir() { return FLIGHTWATT_SOURCE_DIR; }
 
 std::filesystem::path binary_dir() { return FLIGHTWATT_BINARY_DIR; }

@@ -17,7 +17,7 @@ std::filesystem::path hazards_dir();
 /// between (scripts/build_arm64).
 std::filesystem::path programs_dir();
 
-/// The folder of real logs and published figures beside the project; empty where it is absent.
+/// The folder of real logs and published figures next to the project; empty where it is absent.
 std::filesystem::path shared_dir();
 
 /// A folder of its own for the running test, empty at its start.

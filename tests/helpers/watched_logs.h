@@ -54,7 +54,7 @@ inline void receive_all(live::LiveFlight& flight, const std::vector<live::Incomi
     for (const auto& message : messages) flight.receive(message, 0.0);
 }
 
-/// What predict says of the log at a moment.
+/// What predict states of the log at a moment.
 inline live::Prediction predicted(const std::filesystem::path& log, double until_s,
                                   const live::PredictionInput& basis) {
     const auto series = truncate_series(flight::read_flight(log), until_s);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Installs the library, moves the tree, builds examples/ against it, and sets what they print beside the programs: of
-live_predictor beside flightwatt watch --json and predict, of the others beside segment, fit, battery and simulate.
+"""Installs the library, moves the tree, builds examples/ against it, and sets what they print next to the programs: of
+live_predictor next to flightwatt watch --json and predict, of the others next to segment, fit, battery and simulate.
 
 usage: installed_test.py SOURCE BUILD FOLDER [LOG.data MODEL.toml BATTERY.toml REMAINING_S]...
 """
@@ -67,16 +67,16 @@ def numbers_of(state):
 
 
 def compare(example, build, log, model, battery, remaining_s):
-    """Every line of the example beside the watch's, the last one beside predict's."""
+    """Every line of the example next to the watch's, the last one next to predict's."""
     definitions = Path(log).with_suffix(".log")
     with open(log, "rb") as text:
-        said = run([example, definitions, model, remaining_s, battery], stdin=text).splitlines()
+        printed = run([example, definitions, model, remaining_s, battery], stdin=text).splitlines()
     with open(log, "rb") as text:
         watched = run([build / "bin/flightwatt-watch", "-", "--log", definitions, "--model", model, "--remaining",
                        remaining_s, "--battery", battery, "--json"], stdin=text).splitlines()
     states = [json.loads(line) for line in watched]
     states = [state for state in states if state.get("prediction")]
-    lines = [LINE.match(line).groups() for line in said]
+    lines = [LINE.match(line).groups() for line in printed]
     if len(lines) != len(states) or len(lines) < 100:
         sys.exit(f"{log}: {len(lines)} predictions, {len(states)} of the watch")
     for line, state in zip(lines, states):
@@ -88,12 +88,12 @@ def compare(example, build, log, model, battery, remaining_s):
                                 "--battery", battery, "--at-log-time", until_s, "--json"]))
     interval = predicted["remaining_energy_wh_interval_95"]
     if not all(map(same, lines[-1][2:4], interval.values())):
-        sys.exit(f"{log}: {lines[-1]} is not what predict says at {until_s} s: {interval}")
-    print(f"{Path(log).name}: {len(lines)} predictions as watch and predict say them")
+        sys.exit(f"{log}: {lines[-1]} is not what predict states at {until_s} s: {interval}")
+    print(f"{Path(log).name}: {len(lines)} predictions as watch and predict state them")
 
 
 def compare_phases(examples, program, log):
-    """Energies of read_log beside those of segment."""
+    """Energies of read_log next to those of segment."""
     printed = re.findall(r"^  (takeoff|cruise|landing) (\S+) s (\S+) Wh (\S+) W", run([examples / "read_log", log]), re.M)
     segmented = json.loads(run([program, "segment", log, "--json"]))["flights"][0]["sorties"]
     expected = [(phase["phase"], phase["duration_s"], phase["energy_wh"], phase["mean_power_w"])
@@ -106,7 +106,7 @@ def compare_phases(examples, program, log):
 
 
 def compare_files(examples, program, logs, folder):
-    """What fit_model and identify_pack write beside the files of fit and battery."""
+    """What fit_model and identify_pack write next to the files of fit and battery."""
     run([examples / "fit_model", folder / "m.toml", *logs])
     run([program, "fit", *logs, "--name", "fitted", "-o", folder / "fit.toml"])
     run([examples / "identify_pack", folder / "p.toml", "1.3", *logs])
@@ -119,7 +119,7 @@ def compare_files(examples, program, logs, folder):
 
 
 def compare_mission(examples, program, mission):
-    """The landing of simulate_mission beside simulate's."""
+    """The landing of simulate_mission next to simulate's."""
     left, energy_wh = re.search(r": (\S+) % left after \S+ s and (\S+) Wh", run([examples / "simulate_mission", mission])).groups()
     expected = json.loads(run([program, "simulate", mission, "--json"]))
     if not same(left, expected["final_soc_percent"]) or not same(energy_wh, expected["energy_wh"]):

@@ -1,6 +1,6 @@
 // What a live predictor takes of memory and time in a flight:
 //   live_allocations LOG.data MODEL.toml REMAINING_S BATTERY.toml | LOG.data MISSION.toml [--replan]
-// Counts what operator new is asked for after the start. Exit code 1 where a push is refused, or where a look allocates
+// Counts what operator new is asked for after the start. Exit code 1 where a push is refused, or where an update allocates
 // more often than ever was seen.
 
 #include <algorithm>
@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
                 most_push_ms);
     print(looks, true);
     print(looks, false);
-    std::printf("MB since the start: left behind %.1f at half of the flight, %.1f at most; in a look %.1f at most\n",
+    std::printf("MB since the start: left behind %.1f at half of the flight, %.1f at most; in an update %.1f at most\n",
                 static_cast<double>(settled_bytes - start_bytes) / 1e6,
                 static_cast<double>(most_left_bytes - start_bytes) / 1e6,
                 static_cast<double>(allocations.peak_bytes - start_bytes) / 1e6);

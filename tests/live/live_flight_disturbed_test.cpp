@@ -35,7 +35,7 @@ TEST(DisturbedLiveFlight, AStartInMidFlightPredictsWithWhatIsKnown) {
         return of.prediction->interval.high_wh - of.prediction->interval.low_wh;
     };
     EXPECT_TRUE(state.prediction->interval.contains(whole.prediction->remaining_energy.energy_wh));
-    EXPECT_GT(width(state), 0.8 * width(whole)) << "the time that is left is told";
+    EXPECT_GT(width(state), 0.8 * width(whole)) << "the time that is left is reported";
     EXPECT_FALSE(state.battery->soc_percent) << "its charge at the start is not known";
     EXPECT_NEAR(state.prediction->battery->expected.soc_now_percent, state.battery->soc_by_voltage_percent.value(),
                 1e-9);
@@ -70,7 +70,7 @@ TEST(DisturbedLiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
     EXPECT_TRUE(climbing.prediction->interval.contains(state_from(0.0).prediction->remaining_energy.energy_wh));
 }
 
-/// Everything that a bus brings beside the messages of the aircraft.
+/// Everything that a bus brings next to the messages of the aircraft.
 TEST(DisturbedLiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
     const auto log = test::sample(2);
     const auto basis = test::wing_basis();
@@ -124,7 +124,7 @@ TEST(DisturbedLiveFlight, GarbageOtherAircraftAndDamageChangeNothing) {
     EXPECT_EQ(state.restarts, 0U);
 }
 
-/// Its clock is behind, goes in jumps, and begins anew: none of that is the watched aircraft's.
+/// Its clock is behind, goes in jumps, and begins again: none of that is the watched aircraft's.
 TEST(DisturbedLiveFlight, AnotherAircraftsClockChangesNothing) {
     const auto log = test::sample(2);
     LiveFlight clean(test::options_of(log), test::wing_basis(), nullptr);
@@ -194,10 +194,10 @@ TEST(DisturbedLiveFlight, AClockThatIsSetAheadAddsNoEnergy) {
 
 TEST(DisturbedLiveFlight, ALogThatBeginsAnewIsAnotherFlight) {
     const auto log = test::sample(1);
-    std::vector<bool> anew;
+    std::vector<bool> again;
     auto options = test::options_of(log);
     options.on_lines = [&](std::string_view, bool begins) {
-        if (begins) anew.push_back(true);
+        if (begins) again.push_back(true);
     };
     LiveFlight flight(std::move(options), test::wing_basis(), nullptr);
     test::receive_all(flight, test::messages_of(log, 1000.0));
@@ -206,7 +206,7 @@ TEST(DisturbedLiveFlight, ALogThatBeginsAnewIsAnotherFlight) {
     const auto state = flight.update();
     EXPECT_EQ(state.restarts, 1U);
     EXPECT_EQ(state.sortie, 2U);
-    EXPECT_EQ(anew.size(), 1U);
+    EXPECT_EQ(again.size(), 1U);
     ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, test::wing_basis()));
 }

@@ -147,7 +147,7 @@ TEST_F(PageServerTest, BoundsItsConnectionsAndLosesThoseThatTakeNothing) {
     std::vector<std::unique_ptr<Visitor>> silent;  // who never ask do not keep others out
     for (std::size_t i = 0; i < 2 * PageServer::max_connections; ++i) silent.push_back(std::make_unique<Visitor>(port));
     EXPECT_THAT(answer_to("GET /"), StartsWith("HTTP/1.1 200"));
-    // Nobody reads: what waits is bounded, and the last page is answered all the same.
+    // No one reads: what waits is bounded, and the last page is answered nevertheless.
     const std::string large(100'000, 'x');
     for (int i = 0; i < 300; ++i) server.publish('"' + large + '"', "");
     EXPECT_THAT(answer_to("GET /"), StartsWith("HTTP/1.1 200"));

@@ -92,7 +92,7 @@ TEST(PredictionBasis, HoldsWhatAMissionSays) {
     EXPECT_FALSE(energy_input_from_mission(setup, "survey-path.toml").battery);
 }
 
-/// As in drawn flights: what the mission states is known, unless it says how far it is not.
+/// As in drawn flights: what the mission states is known, unless it states how far it is not.
 TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
     auto setup = setup_in("missions/synthetic/survey-path.toml");
     const auto interval_of = [&] { return input_from_mission(setup, "m.toml").battery->intervals.capacity_ah; };

@@ -34,7 +34,7 @@ TEST(Recorder, NeverWritesToAFileThatExists) {
 }
 
 TEST(Recorder, GivesUpWhereItCannotWrite) {
-    const auto folder = test::scratch_dir() / "gone";
+    const auto folder = test::scratch_dir() / "absent";
     Recorder recorder(folder, "a", std::nullopt);
     std::filesystem::remove(folder);
     recorder.write("1 20 PONG\n", false);

@@ -1,4 +1,4 @@
-// Intervals are honest: they hold the truth as often as they say (studies/coverage: the large run).
+// Intervals are honest: they hold the truth as often as they state (studies/coverage: the large run).
 
 #include "helpers/interval_coverage.h"
 

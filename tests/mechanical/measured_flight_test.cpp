@@ -16,7 +16,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A sample a second from 0 to 300 s; the power tells the time.
+/// A sample a second from 0 to 300 s; the power shows the time.
 flight::FlightSeries series_of_300_s() {
     test::SampleColumns series;
     for (int second = 0; second <= 300; ++second) {
@@ -159,7 +159,7 @@ TEST(MeasuredFlights, AreNoneWhereNothingIsLeft) {
     const auto selection = select({first, whole_sortie(150)});
     EXPECT_EQ(selection.exclusions.size(), 3U);
     ASSERT_EQ(selection.flights.size(), 1U);
-    EXPECT_EQ(selection.flights[0].flight, "flight#2");  // the name tells the sortie, not the order
+    EXPECT_EQ(selection.flights[0].flight, "flight#2");  // the name shows the sortie, not the order
     EXPECT_THAT(select({}).flights, IsEmpty());
 }
 

@@ -70,9 +70,9 @@ TEST(MechanicalModel, PublishedPhasesTakeTheirKnownEnergies) {
 
 TEST(MechanicalModel, AStretchedPhaseEndsWhereTheModelEnds) {
     const auto phase = test::published_model().phases[flight::Phase::landing];
-    const auto stretched = time_scaled_model(phase, 2.0 * phase.duration_s, PhaseTimeScaling::scaled);
-    EXPECT_NEAR(power_w(stretched, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
-    EXPECT_NEAR(energy_j(stretched, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s), 1e-9);
+    const auto longer = time_scaled_model(phase, 2.0 * phase.duration_s, PhaseTimeScaling::scaled);
+    EXPECT_NEAR(power_w(longer, 2.0 * phase.duration_s), power_w(phase.fourier, phase.duration_s), 1e-12);
+    EXPECT_NEAR(energy_j(longer, 2.0 * phase.duration_s), 2.0 * energy_j(phase.fourier, phase.duration_s), 1e-9);
     const auto absolute = time_scaled_model(phase, 2.0 * phase.duration_s, PhaseTimeScaling::absolute);
     EXPECT_EQ(absolute.omega_rad_per_s, phase.fourier.omega_rad_per_s);
 }

@@ -48,7 +48,7 @@ std::filesystem::path written(std::string_view text) {
     return path;
 }
 
-/// Reads sound_text with one part replaced, and says what the reader says.
+/// Reads sound_text with one part replaced, and states what the reader states.
 InputError refusal_of(std::string_view part, std::string_view replacement) {
     std::string text(sound_text);
     const auto place = text.find(part);

@@ -96,7 +96,7 @@ TEST(DecidePower, TakesTheCurveOnlyWhereItPredictsNoWorse) {
         return decision_of(cruises(3, mean_wh, curve_wh, mean_w2, curve_w2)).by;
     };
     EXPECT_EQ(basis(10.0, 10.0, 4.0, 1.0), PowerBasis::curve);
-    EXPECT_EQ(basis(10.0, 10.4, 4.0, 1.0), PowerBasis::curve) << "three flights do not tell 4 % apart";
+    EXPECT_EQ(basis(10.0, 10.4, 4.0, 1.0), PowerBasis::curve) << "three flights do not distinguish 4 %";
     EXPECT_EQ(basis(10.0, 10.6, 4.0, 1.0), PowerBasis::mean);
     EXPECT_EQ(basis(10.0, 10.0, 4.0, 4.1), PowerBasis::mean);
     EXPECT_EQ(basis(10.0, 10.0, 4.0, 4.0), PowerBasis::mean) << "the simpler one of equals";

@@ -119,9 +119,9 @@ TEST(TableOne, CanHaveIntervals) {
     EXPECT_EQ(table.rows[0][2], "-");                 // no errors known
     model.phases[flight::Phase::cruise].errors->frequency_is_fixed = true;
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
-    const auto beside = table_one_comparison(test::published_model(), model, TableIntervals::present);
-    EXPECT_EQ(beside.header.size(), 11U);
-    for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 11U);
+    const auto compared = table_one_comparison(test::published_model(), model, TableIntervals::present);
+    EXPECT_EQ(compared.header.size(), 11U);
+    for (const auto& row : compared.rows) EXPECT_EQ(row.size(), 11U);
 }
 
 TEST(TableOneLatex, IsThePapersTable) {

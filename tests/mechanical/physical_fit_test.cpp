@@ -99,7 +99,7 @@ TEST(PhysicalFit, TakesNoMoreTermsThanPhasesOfAFit) {
 TEST(PhysicalFit, TellsTheErrorOfWholePhases) {
     auto flights =
         made_up_motions(3, 42, {.drag = 0.0, .climb = 0.0, .descent = 0.0, .level_sd = 0.0, .drift_sd_w = 0.0}, 4);
-    // Power that comes and goes within a phase is an error of stretches alone.
+    // Power that comes and goes within a phase is an error of segments alone.
     for (auto& flight : flights)
         for (std::size_t i = 0; i < flight.bins.size(); ++i) {
             const bool in_cruise = i > 0 && i + 1 < flight.bins.size();
@@ -110,9 +110,9 @@ TEST(PhysicalFit, TellsTheErrorOfWholePhases) {
     EXPECT_LT(*trial_of(whole, "constant").rms_after_w, 2.0);
     for (auto& flight : flights)
         for (auto& bin : flight.bins) bin.phase = flight::Phase::cruise;
-    const auto stretches = fit_physical_model(flights);
-    EXPECT_FALSE(stretches.phases_decided);
-    EXPECT_GT(*trial_of(stretches, "constant").rms_after_w, 9.0);
+    const auto segments = fit_physical_model(flights);
+    EXPECT_FALSE(segments.phases_decided);
+    EXPECT_GT(*trial_of(segments, "constant").rms_after_w, 9.0);
 }
 
 TEST(PhysicalFit, KeepsNoTermThatStretchesSpeakAgainst) {

@@ -36,9 +36,9 @@ std::string with(const std::string& found, const std::string& instead) {
 }
 
 void expect_rejected(const std::string& text, const std::string& because) {
-    const auto said = test::rejected([&] { read_text(text); }, test::scratch_dir());
-    EXPECT_THAT(said, testing::HasSubstr(because));
-    EXPECT_THAT(said, testing::StartsWith("model.toml:"));
+    const auto printed = test::rejected([&] { read_text(text); }, test::scratch_dir());
+    EXPECT_THAT(printed, testing::HasSubstr(because));
+    EXPECT_THAT(printed, testing::StartsWith("model.toml:"));
 }
 
 TEST(PhysicalToml, KeepsTheTermsOfTheSpeedToFly) {

@@ -115,7 +115,7 @@ TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
 }
 
 TEST(Prediction, ShrinksByTheVariances) {
-    // B^2 = 4; the mean of 300 s drifts by V = 4 too, and without correlation worth naming.
+    // B^2 = 4; the mean of 300 s drifts by V = 4 too, and without a relevant correlation.
     const double correlation_s = 0.01;
     const double sd_w = 2.0 / std::sqrt(2.0 * correlation_s / 300.0);
     const auto cruise = forecast({4, 2.0, sd_w, correlation_s});

@@ -132,7 +132,7 @@ TEST(RotorcraftModel, WingsHaveNoRotorTerms) {
     }
 }
 
-/// Eight real flights with different payloads: what the first minute tells halves the error at least.
+/// Eight real flights with different payloads: what the first minute shows halves the error at least.
 TEST(RotorcraftModel, AMinuteOfARealFlightTellsItsPayload) {
     FLIGHTWATT_NEEDS_SHARED();
     if (!exists(test::shared_dir() / "m100")) GTEST_SKIP() << "../shared/m100 is not here";

@@ -166,7 +166,7 @@ TEST(Validation, InFlightBeatsBeforeFlightOnGeneratedFlights) {
 
 using flight::Phase;
 
-/// A cruise of that energy, predicted with a standard deviation that 30 degrees of freedom tell (none: unknown).
+/// A cruise of that energy, predicted with a standard deviation that 30 degrees of freedom show (none: unknown).
 ValidatedFlight cruise(double measured_wh, double predicted_wh, std::optional<double> sd_wh) {
     ValidatedFlight flight;
     flight.measured_wh[Phase::cruise] = measured_wh;

@@ -84,7 +84,7 @@ TEST(FlightReplanner, ExpectsFlightsToDifferAsTheMissionSaysTheyDo) {
     EXPECT_NE(by_flights, decided(0.0));
     for (const auto phase : all_phases) problem.setup.uncertainty.level_sd_percent[phase].reset();
     problem.setup.mechanical->phases[Phase::cruise].level_spread.reset();
-    EXPECT_EQ(decided(std::nullopt), decided(5.0)) << "nothing says how they differ";
+    EXPECT_EQ(decided(std::nullopt), decided(5.0)) << "nothing states how they differ";
 }
 
 TEST(FlightReplanner, APartOfAPlanLiesWithinItsInterval) {

@@ -30,7 +30,7 @@ cutoff_voltage_v = 10
 reserve_soc_percent = 20
 )";
 
-/// What each hand-written mission computes, and the flights of the mission over several packs beside it.
+/// What each hand-written mission computes, and the flights of the mission over several packs next to it.
 void expect_equal(const PackFlights& all, const std::vector<std::string>& missions) {
     ASSERT_EQ(all.flights.size(), missions.size());
     EXPECT_TRUE(all.suffice) << describe(all);
@@ -124,7 +124,7 @@ std::string leg(const Waypoint& to) {
                        to.north_m, to.altitude_m);
 }
 
-/// Lines in wind, some of which climb, from a home beside them.
+/// Lines in wind, some of which climb, from a home next to them.
 TEST(PackFlights, OnAPathAreThreeMissionsWithTheWaysHome) {
     const std::vector<Waypoint> places{{0, 0, 90},    {4000, 0, 90},    {4000, 300, 90},  {0, 300, 120},
                                        {0, 600, 120}, {4000, 600, 150}, {4000, 900, 150}, {0, 900, 150},

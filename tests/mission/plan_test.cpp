@@ -172,7 +172,7 @@ TEST(Plan, AnswersWhereTheBatteryIsCharged) {
     auto mission = paper_with_reserve(0.0);
     mission.setup.initial_soc_percent = 100.0;
     mission.setup.mechanical->phases[flight::Phase::takeoff].fourier.a0_w = -60.0;  // down a slope: full at once
-    EXPECT_THROW(plan_mission(mission), InputError) << "nobody said that it may";
+    EXPECT_THROW(plan_mission(mission), InputError) << "the mission does not permit it";
     mission.setup.may_charge = true;
     const auto plan = plan_mission(mission);
     ASSERT_TRUE(plan.plan.feasible);
@@ -234,7 +234,7 @@ struct WrittenPlan {
     bool lost_comments = false;
 };
 
-/// Plans a mission whose text stands in missions/paper, and writes it into the folder of the sources.
+/// Plans a mission whose text is in missions/paper, and writes it into the folder of the sources.
 WrittenPlan planned_and_written(const std::string& text) {
     const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
     const auto problem = parse_mission(text, path, {.allow_unplanned = true});
@@ -301,7 +301,7 @@ TEST(Plan, IsWrittenWhateverWayTheFileIsWritten) {
         "components = { detection = { profile = \"\"\"../../fits/compute/tx2-detection.csv\"\"\", "
         "utility = { parameter = \"fps\" } } }\n";
     const auto [plan, written, lost_comments] = planned_and_written(text);
-    EXPECT_FALSE(lost_comments) << "there are none";
+    EXPECT_FALSE(lost_comments) << "it has no comments";
     EXPECT_TRUE(planned_and_written("# A survey.\n" + text).lost_comments);
     const auto again = std::get<Mission>(parse_mission(written, test::source_dir() / "planned.toml"));
     EXPECT_EQ(simulate(again).summary.utility, plan.summary.utility);

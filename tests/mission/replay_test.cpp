@@ -118,7 +118,7 @@ TEST(Replay, OfSamplesOfACurveEndsAsTheCurve) {
     }
 }
 
-/// A flight that nobody planned for: other durations, another level, swings, and samples of any distance.
+/// A flight that no one planned for: other durations, another level, swings, and samples of any distance.
 mechanical::MeasuredFlight any_flight(const MissionSetup& mission, std::mt19937& random) {
     std::uniform_real_distribution<double> part(0.8, 1.25);
     std::normal_distribution<double> noise(0.0, 1.0);
@@ -167,7 +167,7 @@ TEST(Replay, HindsightIsAtLeastAsGoodAsEverythingThatKeepsTheReserve) {
     EXPECT_GT(missed, 0U) << "both were tried";
 }
 
-/// Slots alike on a battery without resistance: all ways to spend a part are as good by the slope of the relaxation.
+/// Equal slots on a battery without resistance: all ways to spend a part are as good by the slope of the relaxation.
 TEST(Replay, HindsightComesCloseToItsBoundOnManySlots) {
     const auto problem = test::paper_problem("adaptive-replanned");
     auto options = with_model_of(problem.setup);
@@ -202,7 +202,7 @@ TEST(Replay, SaysWhatReplanningWasWorth) {
     EXPECT_LT(*comparisons[2].more_soc_percent, 0.0) << "what was saved was spent";
     for (const auto& replay : replays) {
         EXPECT_GE(*by(replay, ScheduleMethod::planned)->expected_soc_percent, problem.setup.reserve_soc_percent);
-        EXPECT_FALSE(by(replay, ScheduleMethod::replanned)->expected_soc_percent) << "nobody knew beforehand";
+        EXPECT_FALSE(by(replay, ScheduleMethod::replanned)->expected_soc_percent) << "no one knew beforehand";
     }
 }
 

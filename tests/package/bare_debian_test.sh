@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The package as a user has it: bare_debian_test.sh PACKAGE.deb [MIRROR]. lintian looks it through; in a bare Debian 12,
 # made by debootstrap, apt installs it, the programs read logs and write a page and its figures from /usr/bin, pages of
-# the manual and completions are where Debian looks for them, and after its removal no file is left or changed.
+# the manual and completions are where Debian searches them, and after its removal no file is left or changed.
 # Needs root, debootstrap, lintian and a mirror of Debian. Exits with 77 (skipped) where these are missing.
 set -euo pipefail
 package=$(realpath "$1")

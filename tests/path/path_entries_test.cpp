@@ -69,7 +69,7 @@ TEST(PathEntries, CircleAroundAPlaceFromItsEdge) {
     // Half a circle more ends on the other side.
     const auto further = build_path({circles(to(1000.0, 0.0), 2.5, 100.0), to(0.0, 0.0)}, defaults());
     EXPECT_NEAR(leg(further, 2).length_m, 1100.0, 1e-9);
-    // Without a place the centre is beside the aircraft: a quarter to the left of the way north is to the west of it.
+    // Without a place the centre is next to the aircraft: a quarter to the left of the way north is to the west of it.
     auto here = circles(entry(), 0.25, 50.0);
     here.to_right = false;
     const auto turned = build_path({to(0.0, 100.0), here, to(-50.0, 150.0), to(-60.0, 150.0)}, defaults());
@@ -98,7 +98,7 @@ TEST(PathEntries, ChangeTheirHeightOnTheWay) {
     EXPECT_DOUBLE_EQ(path.elements[2].altitude_change_m, -40.0);
     EXPECT_EQ(path.elements[2].climb_rate_m_per_s, std::optional(1.0));
     EXPECT_EQ(path.elements[3].climb_rate_m_per_s, std::optional(0.5));
-    // Where the aircraft is already, a rate says how long it takes.
+    // Where the aircraft is already, a rate states how long it takes.
     auto above = to(0.0, 0.0);
     above.altitude_m = 150.0;
     const auto on_the_spot = build_path({above}, high);

@@ -99,16 +99,16 @@ Flown fly(const FlightPath& path, const Conditions& conditions, std::uint32_t se
     return result;
 }
 
-/// The worst of the places that are told every 10 s, from 30 s on; -1 where one is not told.
+/// The worst of the places that are reported every 10 s, from 30 s on; -1 where one is not reported.
 double worst_s(const FlightPath& path, const Conditions& conditions, const Flown& flown) {
     const PathForecast plan({path, conditions.planned, test::made_up_wing()});
     double worst_s = 0.0;
     for (double time_s = begin_s + 30.0; time_s < flown.end_s - 10.0; time_s += 10.0) {
-        const auto sighting = locate(plan, truncate_series(flown.series, time_s), begin_s, time_s);
-        if (!sighting || !sighting->path_time_s) return -1.0;
+        const auto located = locate(plan, truncate_series(flown.series, time_s), begin_s, time_s);
+        if (!located || !located->path_time_s) return -1.0;
         const auto index = static_cast<std::size_t>((time_s - begin_s) / conditions.every_s);
-        const double off_s = std::abs(*sighting->path_time_s - flown.planned_s[index]);
-        if (sighting->is_on_path) worst_s = std::max(worst_s, off_s);
+        const double off_s = std::abs(*located->path_time_s - flown.planned_s[index]);
+        if (located->is_on_path) worst_s = std::max(worst_s, off_s);
     }
     return worst_s;
 }

@@ -86,7 +86,7 @@ TEST(RemainingPath, CountsTheWindsThatForbidIt) {
     wind.speed_sd_m_per_s = 4.0;       // 13 m/s are 1.125 sd more: of 7 equally likely winds the fastest
     const auto rest = PathForecast({path(), wind, test::made_up_wing()}).predict(unseen_flight(), place);
     EXPECT_NEAR(rest.infeasible_fraction, 1.0 / 7.0, 1e-12);
-    wind.from_deg = 0.0;  // from behind: what lay northward before the place does not matter
+    wind.from_deg = 0.0;  // from behind: what was northward before the place does not matter
     EXPECT_EQ(PathForecast({path(), wind, test::made_up_wing()}).predict(unseen_flight(), place).infeasible_fraction,
               0.0);
     const Wind hopeless{20.0, 180.0, 3.0};

@@ -181,7 +181,7 @@ TEST(Trajectory, RefusesWhatCannotBeFlown) {
               "m.toml:7:1: leg 1: the wind of 14 m/s from 90 degrees is too strong for an airspeed of 13 m/s; fly it "
               "faster, on another course, or on another day");
     EXPECT_NE(refusal(element_of(Leg{100.0, 0.0}), {13.5, 10.0}).find("too strong"), std::string::npos);
-    EXPECT_EQ(refusal(element_of(Leg{100.0, 0.0}), {14.0, 180.0}), "");  // a tailwind is none
+    EXPECT_EQ(refusal(element_of(Leg{100.0, 0.0}), {14.0, 180.0}), "");  // a tailwind is no error
     EXPECT_NE(refusal(element_of(Circles{50.0, 1.0}), {13.0, 0.0}).find("too strong"), std::string::npos);
     EXPECT_NE(refusal(climbing(element_of(Leg{100.0, 0.0}), 60.0, 2.0)).find("takes 30 s, and is flown in 7.7"),
               std::string::npos);

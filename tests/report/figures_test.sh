@@ -18,9 +18,9 @@ command -v rsvg-convert >/dev/null || skip rsvg-convert
 rm -rf "$scratch"
 mkdir -p "$scratch"
 "$bin/flightwatt-batch" "$source/logs/opterra_synthetic_01.data" "$source/logs/opterra_synthetic_02.data" -o "$scratch/out" >/dev/null 2>&1
-said=$("$bin/flightwatt-report" "$scratch/out" "$source"/missions/paper/*.toml --figures "$scratch/figures" 2>&1)
-echo "$said"
-[[ $said == *": .vl.json, .svg, .pdf" ]]
+printed=$("$bin/flightwatt-report" "$scratch/out" "$source"/missions/paper/*.toml --figures "$scratch/figures" 2>&1)
+echo "$printed"
+[[ $printed == *": .vl.json, .svg, .pdf" ]]
 
 # Every SVG parses, has marks and an axis with its unit; every PDF is one.
 python3 - "$scratch/figures" <<'PYTHON'
@@ -59,9 +59,9 @@ for drawing in drawings:
     assert sizes and all(abs(size - 32 / 3) < 0.01 for size in sizes), (drawing, sizes)
 PYTHON
 
-# Without node the specifications are written, and it is said.
+# Without node the specifications are written, and it is printed.
 tools=$scratch/tools
 mkdir "$tools"
-said=$(PATH=$tools "$bin/flightwatt-report" "$source/missions/paper/phased.toml" --figures "$scratch/without" 2>&1)
-[[ $said == *"node is not there: no figure was rendered" ]]
+printed=$(PATH=$tools "$bin/flightwatt-report" "$source/missions/paper/phased.toml" --figures "$scratch/without" 2>&1)
+[[ $printed == *"node is not there: no figure was rendered" ]]
 [[ -f $scratch/without/schedules-soc.vl.json && ! -e $scratch/without/schedules-soc.svg ]]

@@ -1,4 +1,4 @@
-// The page of `flightwatt watch --serve` in headless Chromium while a log is played: charts move, nothing is said on the
+// The page of `flightwatt watch --serve` in headless Chromium while a log is played: charts move, nothing is printed on the
 // console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -26,7 +26,7 @@ function start(program, options, output = "ignore") {
 }
 const watch = () => start("flightwatt-watch", ["--follow", growing, "--log", `${log}.log`, "--model", path.join(SOURCE, "fits/mechanical/synthetic-wing.toml"), "--battery", path.join(SOURCE, "fits/battery/synthetic-3s.toml"), "--remaining", "300", "--serve", PORT, "--json"]);
 
-/** Asks every 100 ms, and says every minute what for; CTest ends what never comes. */
+/** Asks every 100 ms, and prints every minute what for; CTest ends what never comes. */
 async function eventually(what, condition) {
   for (let i = 1; !(await condition()); ++i) {
     if (i % 600 === 0) console.error(`waiting until ${what}`);
@@ -92,7 +92,7 @@ test("charts move while a flight is played, and the page outlives its server", a
   await eventually("the page is back", async () => !/NO CONNECTION/.test(await page.locator("#status").innerText()));
   serverIsDown = false;
   const then = await time();
-  await eventually("it goes on", async () => (await time()) > then);
+  await eventually("it continues", async () => (await time()) > then);
   assert.deepEqual(faults, []);
 });
 

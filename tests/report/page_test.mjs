@@ -107,7 +107,7 @@ async function seriousFaults(page, part = "html") {
 /** How many lines a figure shows. */
 const lines = (figure) => figure.locator("svg.marks .mark-line.role-mark path").evaluateAll((paths) => paths.filter((line) => line.getAttribute("d")).length);
 
-test("six flights: every figure is drawn, nothing is said, nothing is asked of the network", async () => {
+test("six flights: every figure is drawn, nothing is printed, nothing is asked of the network", async () => {
   const { page, faults } = await open("six.html");
   const count = await drawAll(page);
   assert.equal(count, 13, `${count} figures`);
@@ -324,7 +324,7 @@ test("names with markup, quotes, unicode and 300 characters break nothing", inCh
   const text = await page.locator("body").innerText();
   for (const part of ["<script>window.hacked=1</script>", "\u03b1\u03b2\u03b3", '"quoted"', "m".repeat(300)]) assert.ok(text.includes(part), part);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  assert.ok(overflow <= 0, `${overflow} px beside the page`);
+  assert.ok(overflow <= 0, `${overflow} px outside of the page`);
   await page.context().close();
 });
 
@@ -379,7 +379,7 @@ test("a link to a compressed flight opens it, and paper has what is open", inChe
   await page.context().close();
 });
 
-test("a browser that cannot open a compressed flight says what to do; so does a damaged page", inCheck, async () => {
+test("a browser that cannot open a compressed flight states what to do; so does a damaged page", inCheck, async () => {
   const context = await browser.newContext();
   const page = await context.newPage();
   await page.addInitScript(() => delete window.DecompressionStream);
@@ -426,7 +426,7 @@ const sizes = { phone: { width: 390, height: 844 }, tablet: { width: 1024, heigh
 for (const colorScheme of ["light", "dark"]) {
   for (const [name, viewport] of Object.entries(sizes)) {
     const isQuick = name === "phone" && colorScheme === "light";
-    test(`${name} in ${colorScheme}: nothing stands beside the page`, isQuick ? {} : inCheck, async () => {
+    test(`${name} in ${colorScheme}: nothing is outside of the page`, isQuick ? {} : inCheck, async () => {
       const { page, faults } = await open("six.html", { colorScheme, viewport });
       await page.evaluate(() => document.querySelectorAll("main details").forEach((details) => (details.open = !details.matches(".flight ~ .flight"))));
       await drawShown(page);

@@ -34,7 +34,7 @@ if ((flights == 0)); then
     exit
 fi
 
-# Names that a page must not believe.
+# Names that a page must not accept.
 log=$source/logs/opterra_synthetic_01
 names=('<script>window.hacked=1<:script>' '"quoted" & '"'single'" 'αβγ ✈ 無人機' "$(printf 'f%.0s' {1..230})" '</script' '-->')
 for name in "${names[@]}"; do

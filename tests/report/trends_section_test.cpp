@@ -49,7 +49,7 @@ answer::PackLedger add_health(std::vector<FlightTrendData>& flights, const answe
     return add_state_of_health(flights, take_uses(flights), options);
 }
 
-std::map<std::string, batch::Trend> told(const std::vector<AircraftTrend>& trends) {
+std::map<std::string, batch::Trend> by_quantity(const std::vector<AircraftTrend>& trends) {
     std::map<std::string, batch::Trend> by_quantity;
     for (const auto& trend : trends)
         if (trend.answer.trend) by_quantity[trend.quantity] = *trend.answer.trend;
@@ -71,7 +71,7 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
         const std::map<std::string, double> truth{{"cruise_power_w", power_part_a_day * fresh_w},
                                                   {"resistance_ohm", ageing.ohm_a_day},
                                                   {"capacity_percent", -100.0 * ageing.part_a_day / mean_part}};
-        const auto trends = told(estimate_trends(flights));
+        const auto trends = by_quantity(estimate_trends(flights));
         for (const auto& [quantity, per_day] : truth) {
             ASSERT_TRUE(trends.contains(quantity)) << quantity << " of seed " << seed;
             const auto& trend = trends.at(quantity);
@@ -86,17 +86,17 @@ TEST(TrendsStudy, HoldTheAgeingThatIsThere) {
 }
 
 TEST(TrendsStudy, AreNotFoundWhereNothingAges) {
-    std::size_t judged = 0;
+    std::size_t checked = 0;
     std::size_t found = 0;
     for (std::uint64_t seed = 11; seed < 11 + seeds; ++seed) {
         auto flights = flown(test::aged_flights({0.0, 0.0, 9}, seed), 0.0, seed);
         add_health(flights);
-        for (const auto& [quantity, trend] : told(estimate_trends(flights))) {
-            ++judged;
+        for (const auto& [quantity, trend] : by_quantity(estimate_trends(flights))) {
+            ++checked;
             found += is_significant(trend) ? 1 : 0;
         }
     }
-    EXPECT_EQ(judged, 3 * seeds);
+    EXPECT_EQ(checked, 3 * seeds);
     EXPECT_LE(found, 7U) << "one in 20 by chance";
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Lets a sample flight fly past the node, with a roscore of its own, and sets the last prediction beside flightwatt predict
+"""Has a sample flight fly past the node, with a roscore of its own, and sets the last prediction next to flightwatt predict
 on a log of the same values. Skipped (77) where ROS or its Python is not installed.
 
 usage: node_test.py SOURCE BUILD FOLDER
@@ -82,7 +82,7 @@ def flown(log):
 
 
 def expected(samples, source, build, folder):
-    """What flightwatt predict says of a log of the same values."""
+    """What flightwatt predict states of a log of the same values."""
     with open(folder / "flown.data", "w", encoding="ascii") as data:
         for time_s, name, values in samples:
             if name == "ENERGY":
@@ -98,7 +98,7 @@ def expected(samples, source, build, folder):
 
 
 class Flight:
-    """The topics on both sides of the node, in a time that the test says."""
+    """The topics on both sides of the node, in a time that the test states."""
 
     START_S = 1_600_000_000
 
@@ -155,9 +155,9 @@ def start_node(build, folder, *parameters):
 
 def check_refusal(build, folder):
     node = start_node(build, folder, "_model:=no-such-model.toml", "_remaining_s:=100.0")
-    said = (folder / "node.err")
-    if node.wait(timeout=120) != 3 or "no-such-model.toml" not in said.read_text():
-        sys.exit(f"a model that is not there: {node.returncode}, {said.read_text()}")
+    printed = (folder / "node.err")
+    if node.wait(timeout=120) != 3 or "no-such-model.toml" not in printed.read_text():
+        sys.exit(f"a model that is not there: {node.returncode}, {printed.read_text()}")
 
 
 def check_prediction(last, predicted):
@@ -171,9 +171,9 @@ def check_prediction(last, predicted):
         "soc_percent": (landing["soc_percent"], wanted["soc_percent"]),
         "voltage_v": (landing["voltage_v"], wanted["voltage_v"]),
     }
-    for name, (said, want) in pairs.items():
-        print(f"{name}: {said} of the node, {want} of predict")
-        if not math.isclose(said, want, rel_tol=1e-4):
+    for name, (printed, want) in pairs.items():
+        print(f"{name}: {printed} of the node, {want} of predict")
+        if not math.isclose(printed, want, rel_tol=1e-4):
             sys.exit(f"{name} differs")
 
 
@@ -185,7 +185,7 @@ def fly(flight, node, samples):
     time.sleep(0.5)
     flight.play(samples)
     end_s = flight.START_S + samples[-1][0]
-    wait_until(lambda: any(abs(said["time_s"] - end_s) < 1e-3 for said in flight.predictions), "the last prediction")
+    wait_until(lambda: any(abs(printed["time_s"] - end_s) < 1e-3 for printed in flight.predictions), "the last prediction")
     node.send_signal(signal.SIGINT)
     if node.wait(timeout=120) != 0:
         sys.exit(f"the node ended with {node.returncode}")

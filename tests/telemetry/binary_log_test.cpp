@@ -184,8 +184,8 @@ std::map<std::string, std::vector<std::vector<std::string>>> by_name(const std::
     return messages;
 }
 
-/// The card's log of 2009 beside what the ground received: the same messages in the same order, but for some at the
-/// ends. (The card's clock is 5 % fast, so that its times tell little.)
+/// The card's log of 2009 next to what the ground received: the same messages in the same order, but for some at the
+/// ends. (The card's clock is 5 % fast, so that its times show little.)
 TEST(BinaryLog, HoldsWhatTheGroundReceived) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto flights = test::shared_dir() / "flights";

@@ -78,7 +78,7 @@ TEST_F(RefusedFile, IsPackedInAWayThatCannotBeRead) {
     EXPECT_THAT(reading("broken.data"), StartsWith("broken.data: cannot be decompressed: "));
 }
 
-/// Each compression tells a file that ends too soon from one that is whole.
+/// Each compression distinguishes a file that ends too soon from a whole one.
 TEST_F(RefusedFile, IsCutOff) {
     std::string text;
     for (int i = 0; i < 5000; ++i) text += std::to_string(i * i) + " 20 PONG \n";

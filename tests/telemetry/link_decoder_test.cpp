@@ -166,7 +166,7 @@ TEST(LinkDecoder, CountsTheTimeOnWhereItStartsAnew) {
     bytes.clear();
     for (const std::uint32_t time : {1'000'000U, 4'000'000'000U, 1'000'100U}) bytes += card_frame(pong, time);
     EXPECT_THAT(decoded(bytes), ElementsAre("100.0000 7 PONG", "400000.0000 7 PONG", "100.0100 7 PONG"))
-        << "one wild time is none";
+        << "one wild time is no restart";
 }
 
 TEST(LinkDecoder, TakesTheTimesOfAnOpenLog) {

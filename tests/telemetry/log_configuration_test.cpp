@@ -114,7 +114,7 @@ TEST(FindLogFile, StandsBesideTheData) {
     EXPECT_FALSE(find_log_file(folder / "c.data").has_value());
     EXPECT_FALSE(find_log_file(folder / std::string(250, 'n')).has_value());
     std::filesystem::create_symlink("loop.log", folder / "loop.log");
-    EXPECT_EQ(find_log_file(folder / "loop.data"), folder / "loop.log") << "read, it says why it cannot be";
+    EXPECT_EQ(find_log_file(folder / "loop.data"), folder / "loop.log") << "read, it states why it cannot be";
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(UndeclaredUnit, IsThatOfPaparazzisOwnDefinition) {
     EXPECT_EQ(undeclared_unit(device, 3), "V");
     EXPECT_EQ(undeclared_unit(device, 0), "");
     EXPECT_EQ(undeclared_unit(definition_of("PONG", {"current"}), 0), "");
-    // Energy was mAh and is Wh: the fields beside it tell.
+    // Energy was mAh and is Wh: the fields next to it show.
     EXPECT_EQ(undeclared_unit(definition_of("ENERGY", {"bat", "amp", "energy", "power"}), 2), "mAh");
     EXPECT_EQ(undeclared_unit(definition_of("ENERGY", {"energy", "power"}), 0), "");
     EXPECT_EQ(undeclared_unit({"ENERGY", {{"power", "float", "mW", "", {}}}, ".log"}, 0), "");
@@ -59,7 +59,7 @@ TEST(FieldIndex, IsOfTheNameAlone) {
     EXPECT_FALSE(field_index(definition, "B"));
 }
 
-/// Layouts are told apart by their numbers of fields, so no two of one message may have the same.
+/// Layouts are distinguished by their numbers of fields, so no two of one message may have the same.
 TEST(BuiltinDefinitions, OfAMessageDifferInTheirNumbersOfFields) {
     for (const auto* message : {"ENERGY", "BAT", "ESC", "POWER_DEVICE", "ESTIMATOR", "GPS", "GPS_INT", "AIR_DATA",
                                 "WIND_INFO", "ROTORCRAFT_FP", "TAKEOFF", "PPRZ_MODE", "NAVIGATION", "NAVIGATION_REF"}) {

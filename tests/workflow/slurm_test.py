@@ -55,17 +55,17 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 """
 
 
-def say(text):
+def note(text):
     print(f"slurm_test: {text}", file=sys.stderr, flush=True)
 
 
 def skip(why):
-    say(f"skipped: {why}")
+    note(f"skipped: {why}")
     sys.exit(SKIPPED)
 
 
 def fail(text):
-    say(f"error: {text}")
+    note(f"error: {text}")
     sys.exit(1)
 
 
@@ -191,7 +191,7 @@ def start_cluster(folder):
         for name in ("munged", "slurmctld", *NODES):
             log = os.path.join(folder, "log", name)
             if os.path.exists(log):
-                say(f"{name}: " + " | ".join(open(log).read().splitlines()[-3:]))
+                note(f"{name}: " + " | ".join(open(log).read().splitlines()[-3:]))
         skip("Slurm does not start here")
     return cluster
 
@@ -283,17 +283,17 @@ def disturb(cluster, workflow, out, is_short):
     ended = cluster.kill_node("node1")
     before = records(out)
     killed = ended.count("flightwatt")
-    say(f"node1 killed with {', '.join(ended)}; {len(before)} flights done")
+    note(f"node1 killed with {', '.join(ended)}; {len(before)} flights done")
     if killed == 0:
         fail("node1 was killed, and no batch with it")
     if is_short:
-        cluster.start("node1")  # it finds its job gone
+        cluster.start("node1")  # it finds its job absent
         return before, killed
     time.sleep(10)  # Slurm stores what it knows of jobs within 5 s; a controller killed before has forgotten some
     cluster.kill("slurmctld")
     time.sleep(5)
     cluster.start("slurmctld")
-    say("controller killed, and started again after 5 s")
+    note("controller killed, and started again after 5 s")
     wait_until("node1 to be missed", lambda: cluster.node_state("node1").startswith("DOWN"), 300)
     cluster.start("node1")
     return before, killed
@@ -306,9 +306,9 @@ def done_counts(out):
     for name in filter(lambda name: name.endswith(".log"), os.listdir(chunks)):
         with open(os.path.join(chunks, name)) as lines:
             for line in lines:
-                if told := re.match(r"flightwatt-batch: \[\d+/\d+\] (.*): (done|up to date)$", line):
-                    if told[2] == "done":
-                        counts[told[1]] = counts.get(told[1], 0) + 1
+                if reported := re.match(r"flightwatt-batch: \[\d+/\d+\] (.*): (done|up to date)$", line):
+                    if reported[2] == "done":
+                        counts[reported[1]] = counts.get(reported[1], 0) + 1
                     else:
                         up_to_date += 1
     return counts, up_to_date

@@ -31,7 +31,10 @@ using boost::system::error_code;
 /// library would connect once more.
 constexpr std::chrono::seconds announce_interval{1};
 
-using ReusePort = asio::detail::socket_option::boolean<SOL_SOCKET, SO_REUSEPORT>;
+/// Sets an option that Asio does not name. An agent works without it, too.
+void set_option(int socket, int level, int option, int value) {
+    ::setsockopt(socket, level, option, &value, sizeof(value));
+}
 
 void check(const error_code& error, const udp::endpoint& bus, const char* action) {
     if (!error) return;
@@ -45,7 +48,7 @@ void open_bus(udp::socket& socket, const udp::endpoint& bus) {
     socket.open(udp::v4(), error);
     check(error, bus, "open a UDP socket");
     socket.set_option(asio::socket_base::reuse_address(true), error);
-    socket.set_option(ReusePort(true), error);
+    set_option(socket.native_handle(), SOL_SOCKET, SO_REUSEPORT, 1);
     socket.set_option(asio::socket_base::broadcast(true), error);
     socket.bind({udp::v4(), bus.port()}, error);
     check(error, bus, "listen for announcements");
@@ -58,9 +61,9 @@ void open_bus(udp::socket& socket, const udp::endpoint& bus) {
 void keep_alive(tcp::socket& socket) {
     error_code ignored;
     socket.set_option(asio::socket_base::keep_alive(true), ignored);
-    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>(20), ignored);
-    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>(10), ignored);
-    socket.set_option(asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>(3), ignored);
+    set_option(socket.native_handle(), IPPROTO_TCP, TCP_KEEPIDLE, 20);
+    set_option(socket.native_handle(), IPPROTO_TCP, TCP_KEEPINTVL, 10);
+    set_option(socket.native_handle(), IPPROTO_TCP, TCP_KEEPCNT, 3);
     socket.set_option(asio::ip::tcp::no_delay(true), ignored);
 }
 

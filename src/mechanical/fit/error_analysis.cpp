@@ -1,8 +1,9 @@
+#include "mechanical/fit/error_analysis.h"
+
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/frequency_scan.h"
-#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <array>

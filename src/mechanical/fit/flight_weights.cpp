@@ -1,5 +1,6 @@
+#include "mechanical/fit/flight_weights.h"
+
 #include "base/statistics.h"
-#include "mechanical/fit/phase_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -105,20 +105,4 @@ struct PosteriorPower {
 std::vector<PosteriorPower> predict_posterior_power(const PhysicalModel& model, std::span<const FlightBin> flown,
                                                     double now_s, std::span<const MotionAhead> ahead);
 
-/// Minimum relative reduction of the cross-validated mean square error to keep a term.
-inline constexpr double min_mse_reduction = 0.05;
-
-struct TermSelection {
-    std::vector<PowerTerm> terms;  ///< in the order of all_power_terms; empty where none is determined
-    std::vector<TermTrial> trials;
-    std::size_t folds = 0;
-    bool phases_decided = false;  ///< not the bins
-};
-
-/// The terms that predict hold-out flights (see fit_physical_model). `flights` have bins; `regression` is theirs.
-TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression);
-
-/// Whether these coefficients are physically possible, in the order of `terms`.
-bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients);
-
 }  // namespace flightwatt::mechanical

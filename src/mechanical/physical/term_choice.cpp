@@ -1,4 +1,4 @@
-#include "mechanical/physical/power_regression.h"
+#include "mechanical/physical/term_choice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,17 @@
 
 namespace flightwatt::mechanical {
 namespace {
+
+/// Whether these coefficients are physically possible, in the order of `terms`.
+bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
+    double climb = 0.0;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const double value = coefficients[static_cast<Eigen::Index>(i)];
+        if (terms[i] == PowerTerm::climb) climb = value;
+        if (terms[i] == PowerTerm::descent ? value > 0.0 || climb + value < 0.0 : value < 0.0) return false;
+    }
+    return true;
+}
 
 constexpr std::size_t max_folds = 10;
 constexpr std::size_t blocks_of_single_flight = 5;
@@ -232,16 +243,6 @@ std::optional<Candidate> first_term(const Folds& of) {
 }
 
 }  // namespace
-
-bool are_physical(const std::vector<PowerTerm>& terms, const ColumnVector& coefficients) {
-    double climb = 0.0;
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-        const double value = coefficients[static_cast<Eigen::Index>(i)];
-        if (terms[i] == PowerTerm::climb) climb = value;
-        if (terms[i] == PowerTerm::descent ? value > 0.0 || climb + value < 0.0 : value < 0.0) return false;
-    }
-    return true;
-}
 
 TermSelection select_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression) {
     const auto of = folds_of(flights, regression);

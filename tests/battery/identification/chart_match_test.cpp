@@ -68,7 +68,7 @@ TEST(ChartMatch, TakesNoSmoothnessForARuler) {
     };
     const auto coarse = width(capacity_posterior(shown(80.0, 50.0, 3), std::nullopt));
     const auto fine = width(capacity_posterior(shown(80.0, 50.0, 12), std::nullopt));
-    EXPECT_NEAR(fine, coarse, 0.1 * coarse) << "the same curve, told at more knots";
+    EXPECT_NEAR(fine, coarse, 0.1 * coarse) << "the same curve, reported at more knots";
     EXPECT_GT(fine, 2.0);
 }
 

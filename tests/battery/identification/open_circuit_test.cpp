@@ -1,4 +1,4 @@
-// The charts, and what they stand in for: the capacity, and the end of the curve.
+// The charts, and what they replace: the capacity, and the end of the curve.
 
 #include "battery/identification/open_circuit.h"
 

@@ -66,12 +66,12 @@ TEST(PackChanges, AreNoneInAGlide) {
 }
 
 TEST(PackChanges, AreNoneWhereTheSamePackFliesAgain) {
-    for (const bool anew : {true, false}) {
-        const auto [records, notes] = records_of({false, anew, true});
+    for (const bool again : {true, false}) {
+        const auto [records, notes] = records_of({false, again, true});
         ASSERT_EQ(records.size(), 1U);
         const auto once_ah = test::discharge_columns(test::known_pack(), {}, 11).charge_ah.back();
         EXPECT_NEAR(records[0].charge_ah.back(), 2.0 * once_ah, 0.2 * once_ah);
-        if (anew)
+        if (again)
             EXPECT_THAT(notes, ElementsAre(HasSubstr("the charge counter is reset")));
         else
             EXPECT_THAT(notes, IsEmpty());

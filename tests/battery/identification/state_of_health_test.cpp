@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-// How the resistances of flights scatter, and how they go on.
-// What each flight alone says of its pack, as that ages.
+// How the resistances of flights scatter, and how they continue.
+// What each flight alone states of its pack, as that ages.
 namespace flightwatt::battery {
 namespace {
 
@@ -21,7 +21,7 @@ TEST(FlightResistance, ScattersByMoreThanItsErrors) {
     const auto scatter = [](const std::vector<std::optional<FlightResistance>>& all) {
         return resistance_scatter_ohm(all, 0.1);
     };
-    EXPECT_DOUBLE_EQ(scatter({resistance(0.1)}), 0.015) << "one flight says nothing of others";
+    EXPECT_DOUBLE_EQ(scatter({resistance(0.1)}), 0.015) << "one flight states nothing about others";
     EXPECT_DOUBLE_EQ(scatter({resistance(0.1), std::nullopt}), 0.015);
     // Equal resistances: what stands beforehand counts as one flight of four.
     EXPECT_NEAR(scatter({resistance(0.1), resistance(0.1), resistance(0.1), resistance(0.1)}), 0.0075, 1e-9);

@@ -34,10 +34,10 @@ TEST(TableText, RefusesAnotherEnding) {
 TEST(TableOf, StandsBesideAPublishedModelWhereThereIsOne) {
     const auto model = test::published_model();
     const auto alone = model_table(model, std::nullopt);
-    const auto beside = model_table(model, model);
+    const auto compared = model_table(model, model);
     EXPECT_EQ(alone.header.size(), 5U) << "a name, three phases and the unit";
-    EXPECT_EQ(beside.header.size(), 8U);
-    EXPECT_GT(beside.rows.size(), alone.rows.size()) << "durations and differences stand below";
+    EXPECT_EQ(compared.header.size(), 8U);
+    EXPECT_GT(compared.rows.size(), alone.rows.size()) << "durations and differences are below";
 }
 
 std::vector<mechanical::FlightSamples> recorded_flights() {

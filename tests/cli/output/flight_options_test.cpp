@@ -223,7 +223,7 @@ TEST_F(FlightOptions, ExcludeAndKeepFlights) {
         const auto unknown = run(stage + three + " --exclude opterra_synthetic_2");
         EXPECT_EQ(unknown.code, usage_error) << stage;
         EXPECT_THAT(unknown.err, HasSubstr("there is no such flight; did you mean 'opterra_synthetic_02'?"));
-        EXPECT_EQ(run(stage + three + " --keep nobody").code, usage_error) << stage;
+        EXPECT_EQ(run(stage + three + " --keep unknown").code, usage_error) << stage;
     }
     EXPECT_EQ(run("segment --exclude opterra_synthetic_01" + sample(1)).code, usage_error);
     // Power that runs the wrong way is refused, unless it is kept.

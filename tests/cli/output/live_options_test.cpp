@@ -1,4 +1,4 @@
-// What predict and watch predict from, as options say it.
+// What predict and watch predict from, as options state it.
 
 #include "cli/output/live_options.h"
 
@@ -40,7 +40,7 @@ TEST(BasisOptions, OfAMissionWithoutAPathTakeItsCruiseAndItsBattery) {
     EXPECT_EQ(basis.cruise_s, 1800.0);
     EXPECT_EQ(basis.limits.reserve_soc_percent, 20.0);
     EXPECT_TRUE(basis.battery && basis.battery->thevenin);
-    EXPECT_FALSE(basis.initial_soc_percent) << "its voltage tells it";
+    EXPECT_FALSE(basis.initial_soc_percent) << "its voltage shows it";
     EXPECT_FALSE(basis.no_prediction_reason.empty()) << "a published model has no spread";
     EXPECT_THROW(basis_of(words, false), InputError) << "which predict cannot do without";
 }

@@ -65,7 +65,7 @@ TEST(MissionJson, HoldsTheSummaryWithNullForNever) {
     EXPECT_TRUE(json["depleted_at_s"].is_null());
     EXPECT_TRUE(json["cut_off_at_s"].is_null());
     EXPECT_FALSE(json.contains("samples"));
-    EXPECT_FALSE(json.contains("power_model")) << "its file does not tell how it predicts";
+    EXPECT_FALSE(json.contains("power_model")) << "its file does not show how it predicts";
     summary.power_model = mechanical::HeldOutScore{"physical", 4, 2.7};
     EXPECT_EQ(record_json(summary)["power_model"],
               nlohmann::ordered_json({{"model", "physical"}, {"flights", 4}, {"mean_absolute_error_percent", 2.7}}));

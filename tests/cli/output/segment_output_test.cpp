@@ -1,4 +1,4 @@
-// What segment says of a log, in words and as JSON.
+// What segment states of a log, in words and as JSON.
 
 #include "cli/output/segment_output.h"
 

@@ -1,4 +1,4 @@
-// What watch says, of a state made by hand.
+// What watch states, of a state made by hand.
 
 #include "cli/output/watch_output.h"
 

@@ -44,7 +44,7 @@ class MisbehavingComponent : public testing::Test {
         return run_component({{"sh", "-c", whole}}, timing, frame);
     }
     std::filesystem::path output;
-    double patience_s = 10.0;  ///< with those that follow SIGTERM, as soon as the machine lets them
+    double patience_s = 10.0;  ///< with those that follow SIGTERM, as soon as the machine allows it
     void expect_nothing_left() const { EXPECT_EQ(test::processes_with(marker), 0); }
 };
 
@@ -126,7 +126,7 @@ TEST_F(MisbehavingComponent, PrintsWithoutEnd) {
 }
 
 TEST_F(MisbehavingComponent, ForksOnAndOn) {
-    patience_s = 0.2;  // what is forked meanwhile may miss SIGTERM
+    patience_s = 0.2;  // what is forked in the meantime may miss SIGTERM
     run("while :; do FOREVER & sleep 0.005; done", short_time);
     expect_nothing_left();
 }
@@ -164,7 +164,7 @@ TEST(ComponentRun, ASamplerThatBreaksLeavesNothingRunning) {
     int calls = 0;
     sampler.read = [&calls]() -> std::vector<PowerReading> {
         if (++calls < 3) return {};
-        throw NoResultError("the meter is gone");
+        throw NoResultError("the meter is absent");
     };
     RunContext frame;
     frame.sampler = &sampler;
@@ -226,15 +226,15 @@ TEST(ComponentRun, OfARecording) {
     EXPECT_DOUBLE_EQ(run_of_recording({{0.0}, {4.0}}, {}, 0.1).duration_s, 0.1);
 }
 
-/// A sampler runs beside components, and is started while they run.
+/// A sampler runs next to components, and is started while they run.
 TEST(SupervisedProcesses, EndNoOthers) {
     const auto component = test::new_marker();
     const auto sampler = test::new_marker();
     SupervisedProcesses of_component({{"sh", "-c", "setsid sleep " + component + " & sleep " + component}}, {});
-    SupervisionOptions beside;
-    beside.owns_orphans = false;
-    SupervisedProcesses of_sampler({{"sleep", sampler}}, beside);
-    { const SupervisedProcesses before({{"sleep", sampler}}, beside); }
+    SupervisionOptions options;
+    options.owns_orphans = false;
+    SupervisedProcesses of_sampler({{"sleep", sampler}}, options);
+    { const SupervisedProcesses before({{"sleep", sampler}}, options); }
     EXPECT_TRUE(test::wait_until([&] { return test::processes_with(component) >= 2; }));
     of_component.end();
     EXPECT_EQ(test::processes_with(component), 0);

@@ -27,7 +27,7 @@ TEST(RunStatistics, EnergyIsMeanPowerTimesDuration) {
     EXPECT_DOUBLE_EQ(run.power_w, 3.0);
     EXPECT_DOUBLE_EQ(run.energy_j, 1.2);
     EXPECT_EQ(run.samples, 4U);
-    // A late sample stands for the time that it closes, the first for the median interval, 0.3 s.
+    // A late sample represents the time that it closes, the first for the median interval, 0.3 s.
     EXPECT_NEAR(estimate_run({{0.0, 0.1, 0.4}, {1.0, 1.0, 4.0}}, 0.5).power_w, (0.3 + 0.1 + 1.2) / 0.7, 1e-12);
     const auto single = estimate_run({{0.0}, {5.0}}, 2.0);
     EXPECT_EQ(single.energy_j, 10.0);

@@ -269,7 +269,7 @@ TEST(PowerRules, OfCountersThatRunBackOrContradict) {
     };
     EXPECT_THAT(away(-10.1, 0.0).power_faults,
                 Contains("the measured integral in flight is -10.1 % away from the on-board charge counter"));
-    EXPECT_THAT(away(-10.1, 0.0).warnings, IsEmpty()) << "said as a fault";
+    EXPECT_THAT(away(-10.1, 0.0).warnings, IsEmpty()) << "printed as a fault";
     EXPECT_THAT(away(9.9, 0.0).power_faults, IsEmpty());
     EXPECT_THAT(away(10.5, 1.0).power_faults, IsEmpty());
     EXPECT_THAT(away(3.5, 1.0).warnings, IsEmpty());

@@ -28,7 +28,7 @@ double value(const test::Words& words, Field field) { return number_or_nan(words
 void set(test::Words& words, Field field, double to) { words[field] = fmt::format("{:.6f}", to); }
 void scale(test::Words& words, Field field, double by) { set(words, field, value(words, field) * by); }
 
-/// The first sample log whose ENERGY messages are changed; `counts` tells whether the counters are left.
+/// The first sample log whose ENERGY messages are changed; `counts` shows whether the counters are left.
 LoadedFlight with_energy(bool counts, const std::function<void(test::Words&, int)>& damage) {
     int number = 0;
     return test::examined(test::damaged_sample([&](test::Words& words) {
@@ -308,15 +308,15 @@ TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
 }
 
 TEST(PowerWarnings, KnowACounterByItsDecimalsHoweverSeldomItIsLogged) {
-    const auto seldom = with_energy(true, [](test::Words& words, int number) {
+    const auto rare = with_energy(true, [](test::Words& words, int number) {
         scale(words, power, 0.94);
         scale(words, current, 0.94);
         words[charge] = "0";
         if (number % 18 != 0) words.clear();
     });
-    EXPECT_THAT(texts_of(seldom.diagnostics), testing::Contains(HasSubstr("away from the on-board energy counter")));
-    const auto& sortie = seldom.phases.sorties.at(0);
-    EXPECT_GT(PowerStatistics(seldom.data).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
+    EXPECT_THAT(texts_of(rare.diagnostics), testing::Contains(HasSubstr("away from the on-board energy counter")));
+    const auto& sortie = rare.phases.sorties.at(0);
+    EXPECT_GT(PowerStatistics(rare.data).between(sortie.start_s(), sortie.end_s()).gaps, 10U) << "counted in time";
 }
 
 }  // namespace

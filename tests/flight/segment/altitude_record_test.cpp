@@ -210,7 +210,7 @@ TEST(AltitudeRecord, IsUnusableWithMoreThanTenJumpsOrOneOfAKilometre) {
 }
 
 TEST(AltitudeRecord, KeepsWhatASmallAircraftFlies) {
-    // A hotliner: 100 m in 3 s, and down again as fast, from an altitude that stands still to the millimetre.
+    // A hotliner: 100 m in 3 s, and down again as fast, from an altitude that does not move to the millimetre.
     std::vector<test::Point> points{{0, 0, 0}, {60, 0, 0}, {61, 0, 100}, {64, 100, 100}, {65, 100, 0}};
     points.insert(points.end(), {{200, 80, 0}, {201, 80, 100}, {204, 180, 100}, {205, 180, 0}, {400, 150, 0}});
     points.insert(points.end(), {{405, 20, 0}, {430, 0, 0}, {500, 0, 0}});

@@ -102,7 +102,7 @@ TEST(FlightRejectionLimits, OfAnAirspeedThatShowsFlightWithTheMotorOff) {
     EXPECT_THAT(flies(7.1, 14.9), HasSubstr("its estimator has no fix"));
 }
 
-/// An altitude that moves from sample to sample or as given, beside a GPS and a barometer.
+/// An altitude that moves from sample to sample or as given, next to a GPS and a barometer.
 std::string beside_gps(const Values& own_m, const Values& gps_m, double gps_interval_s = 1.0,
                        const Values& barometer_m = constant(0.0)) {
     return why_none({.altitude_m = own_m,
@@ -167,7 +167,7 @@ TEST(FlightRejectionLimits, OfRoads) {
     EXPECT_THAT(drives(10.9, 30.0), driven);
     EXPECT_EQ(drives(11.1, 30.0), "");
     EXPECT_THAT(drives(0.0, 1.0, 5.0), driven);
-    EXPECT_EQ(drives(0.0, 1.0, 5.3), "") << "seen too seldom";
+    EXPECT_EQ(drives(0.0, 1.0, 5.3), "") << "seen too rarely";
 }
 
 TEST(FlightRejectionLimits, OfAnAircraftThatStands) {

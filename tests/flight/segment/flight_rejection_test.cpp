@@ -56,7 +56,7 @@ TEST(FlightRejection, WhereAnotherAltitudeSaysThatNothingMoved) {
     confirmed.tracks.push_back(select_track(series, "altitude_m"));
     confirmed.tracks.back().source = "AIR_DATA.amsl_baro";
     EXPECT_EQ(why_none(confirmed), "1 sorties");
-    // Without a fix it repeats one value, which says nothing, and a barometer alone may be broken.
+    // Without a fix it repeats one value, which states nothing, and a barometer alone may be broken.
     auto broken = series;
     broken.tracks.back().source = "AIR_DATA.amsl_baro";
     EXPECT_EQ(why_none(broken), "1 sorties");
@@ -89,7 +89,7 @@ TEST(FlightRejection, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
         if (track.name == "altitude_m") track.source = "GPS.alt";
     }
     EXPECT_THAT(why_none(series), HasSubstr("driven or carried"));
-    // A rotorcraft may hover there, and what nobody clocked may fly.
+    // A rotorcraft may hover there, and what no one clocked may fly.
     auto hovering = series;
     for (auto& track : hovering.tracks) {
         if (track.name != "altitude_m") continue;
@@ -173,7 +173,7 @@ TEST(FlightRejection, OfNoRealRover) {
         SCOPED_TRACE(entry.path().filename());
         for (auto& series : read_candidates(FlightFile(entry.path()), std::nullopt)) {
             EXPECT_THAT(why_none(series), HasSubstr("a ground vehicle")) << series.aircraft_id;
-            // Nor where nothing says what it is: by physics.
+            // Nor where nothing states what it is: by physics.
             std::erase_if(series.tracks, [](const Track& track) { return track.name == "rover_mode"; });
             series.firmware.clear();
             EXPECT_TRUE(segment(select_tracks(series)).sorties.empty()) << series.aircraft_id;
@@ -231,7 +231,7 @@ TEST(FlightRejection, OfWhatStandsByGroundSpeedAndPosition) {
     for (auto& track : frozen.tracks)
         if (track.name == "ground_speed_m_per_s") track.value.assign(track.value.size(), 0.0);
     EXPECT_EQ(why_none(frozen), "1 sorties");
-    // Against the wind a wing may hardly move, but not within the width of a field.
+    // Against the wind a wing may barely move, but not within the width of a field.
     EXPECT_EQ(why_none(standing_series({.extent_m = 60.0, .airspeed_m_per_s = 9.0})), "1 sorties");
     EXPECT_THAT(why_none(standing_series({.extent_m = 20.0, .airspeed_m_per_s = 9.0})), stood);
 }

@@ -51,7 +51,7 @@ TEST(HoverRecord, IsThatOfARotorcraftHoweverLow) {
     EXPECT_THAT(segment(select_tracks(series)).sorties, IsEmpty());
 }
 
-/// Without a throttle, the current tells hovering from idling.
+/// Without a throttle, the current distinguishes hovering from idling.
 TEST(HoverRecord, IsToldByACurrentThatLifts) {
     const auto events = [](double current_a, double altitude_m) {
         FlightSeries series;

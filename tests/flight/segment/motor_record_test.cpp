@@ -26,7 +26,7 @@ test::SampleColumns measured_flight() {
     return columns;
 }
 
-/// A hundred times what the series says.
+/// A hundred times what the series states.
 std::vector<double> columns_of_percent(const FlightSeries& series) {
     std::vector<double> percent;
     for (const auto& track : series.tracks) {
@@ -103,7 +103,7 @@ TEST(MotorRecord, SaysThatNothingTellsOfTheMotor) {
     EXPECT_EQ(phases.motor_source, "nothing");
     EXPECT_THAT(phases.warnings, testing::Contains(HasSubstr("no throttle: segmented by altitude only")));
     for (const auto& event : phases.ground_events) {
-        EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "nobody measured that";
+        EXPECT_THAT(event.what, testing::Not(HasSubstr("motor off"))) << "no one measured that";
     }
 }
 
@@ -138,7 +138,7 @@ TEST(MotorRecord, TakesAThrottleFromZeroToOneForAFraction) {
         EXPECT_THAT(warnings_of(series),
                     testing::Contains(HasSubstr("is 0 to 0.9: it is read as a fraction, 0 to 90 %")));
     }
-    // On the ground, with the motor off, it is what it says.
+    // On the ground, with the motor off, it is what it states.
     auto columns = measured_flight();
     for (auto& power_w : columns.power_w) power_w = 0.4;
     for (auto& throttle : columns.throttle_percent) throttle = throttle > 0 ? 1.0 : 0.0;

@@ -44,7 +44,7 @@ TEST(PhaseEdges, LandingTakesSeveralSteps) {
 TEST(PhaseEdges, ASurveyInStagesIsACruise) {
     const auto sortie = flown({{440, 45, 40}, {590, 45, 60}, {600, 32, 40}, {750, 32, 60}, {765, 0, 0}}, 280.0);
     EXPECT_NEAR(landing_start_s(sortie), 751.0, 3.0);
-    // Short stages too, if they are alike.
+    // Short stages too, if they are equal.
     const auto quick =
         flown({{170, 60, 60}, {180, 47, 40}, {220, 47, 60}, {230, 35, 40}, {270, 35, 60}, {285, 0, 0}}, 160.0);
     EXPECT_NEAR(landing_start_s(quick), 271.0, 3.0);

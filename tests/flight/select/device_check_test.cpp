@@ -25,7 +25,7 @@ struct Report {
 /// What one of several devices reports, given what the pack draws.
 using DeviceReport = std::function<Report(int device, double time_s, Report pack)>;
 
-/// The first sample log, read without its .log, with ENERGY told by `count` devices, one millisecond after the other.
+/// The first sample log, read without its .log, with ENERGY reported by `count` devices, one millisecond after the other.
 LoadedFlight with_devices(const std::string& message, int count, const DeviceReport& report) {
     std::string text;
     test::damaged_sample([&](test::Words& words) {
@@ -149,7 +149,7 @@ TEST(DeviceDoubts, LetLiftMotorsStandWhileThePusherRuns) {
     EXPECT_THAT(test::said_of(loaded), Not(HasSubstr("reports")));
 }
 
-/// What devices at 12 V are doubted of that report a hundred times, one second apart, given the current of each.
+/// What devices at 12 V are suspected of that report a hundred times, one second apart, given the current of each.
 std::vector<std::string> doubts_of(const std::string& message, int count,
                                    const std::function<double(int device, int second)>& current_a) {
     std::string text;
@@ -224,7 +224,7 @@ TEST(DeviceDoubts, KnowTheUsualPartOfACircuitFromATenthOfTheEnergyOn) {
             return second < seconds ? 0.5 * wavering_a(second) : 2.0;
         });
     };
-    EXPECT_THAT(stuck_after(10), testing::IsEmpty()) << "it stands at what it usually draws";
+    EXPECT_THAT(stuck_after(10), testing::IsEmpty()) << "it is at what it usually draws";
     EXPECT_THAT(stuck_after(9), testing::ElementsAre(HasSubstr("POWER_DEVICE 1/1 reports a constant value")));
 }
 
@@ -239,12 +239,12 @@ TEST(DeviceDoubts, TakeADeviceForTheSumOfTheOthersWithinATwentieth) {
 }
 
 TEST(DeviceDoubts, AreNotLookedForAmongMoreThan32) {
-    const auto alike = [](int count) {
+    const auto equal = [](int count) {
         return doubts_of("ESC", count, [](int motor, int second) { return motor == 5 ? 0.0 : wavering_a(second); });
     };
-    EXPECT_THAT(alike(33), testing::ElementsAre("33 ESC devices: too many to compare them"));
-    EXPECT_THAT(alike(32), testing::IsEmpty()) << "one of 32 draws 3.1 %";
-    EXPECT_THAT(alike(20), testing::ElementsAre(HasSubstr("ESC 5 reports almost no power")));
+    EXPECT_THAT(equal(33), testing::ElementsAre("33 ESC devices: too many to compare them"));
+    EXPECT_THAT(equal(32), testing::IsEmpty()) << "one of 32 draws 3.1 %";
+    EXPECT_THAT(equal(20), testing::ElementsAre(HasSubstr("ESC 5 reports almost no power")));
 }
 
 TEST(DeviceDoubts, TakeVoltagesForDifferentFromATenthOn) {

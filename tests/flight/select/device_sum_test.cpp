@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The first sample log, read without its .log, with ENERGY told by four motors: `report` says the lines of one.
+/// The first sample log, read without its .log, with ENERGY reported by four motors: `report` states the lines of one.
 template <typename Report>
 LoadedFlight with_motors(const Report& report) {
     std::string text;

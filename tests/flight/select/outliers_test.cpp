@@ -99,7 +99,7 @@ TEST(Outliers, AreSpikesOfPowerAndCurrent) {
     EXPECT_EQ(removed(of_ten), 1U);
     of_ten.time_s.pop_back();
     of_ten.value.pop_back();
-    EXPECT_EQ(removed(of_ten), 0U) << "too few to be judged";
+    EXPECT_EQ(removed(of_ten), 0U) << "too few to be assessed";
 }
 
 TEST(Outliers, AreSpikesOfVoltage) {
@@ -129,7 +129,7 @@ TEST(Outliers, AreDropoutsWhileTheThrottleIsOpen) {
     EXPECT_EQ(removed(dropout), 0U) << "no throttle is known";
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 0.0}, {51, 0.0}, {52, 0.0}, {53, 0.0}}), throttle(50.0)), 0U);
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 4.9}, {50, 0.0}}), throttle(50.0)), 0U)
-        << "beside less than a quarter of the median";
+        << "next to less than a quarter of the median";
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 5.1}, {50, 0.0}}), throttle(50.0)), 1U);
 }
 

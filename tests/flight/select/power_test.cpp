@@ -64,7 +64,7 @@ TEST(PowerSource, IsContradictedInSamplesATenthAndAWattAwayFromVoltageTimesCurre
     EXPECT_EQ(contradicted({{20, 100.0, 98.0}, {1, 100.0, 78.5}}), 1U) << "ten times the median difference";
     EXPECT_EQ(contradicted({{20, 100.0, 98.0}, {1, 100.0, 79.5}}), 0U);
     EXPECT_EQ(contradicted({{9, 100.0, 100.0}, {1, 100.0, 50.0}}), 1U);
-    EXPECT_EQ(contradicted({{8, 100.0, 100.0}, {1, 100.0, 50.0}}), 0U) << "too few to be judged";
+    EXPECT_EQ(contradicted({{8, 100.0, 100.0}, {1, 100.0, 50.0}}), 0U) << "too few to be assessed";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The agent among others: those of a test that say what Ivy's libraries in C and Python say, byte by byte, and its
+// The agent among others: those of a test that state what Ivy's libraries in C and Python state, byte by byte, and its
 // like.
 
 #include "live/sources/ivy_agent.h"
@@ -36,7 +36,7 @@ class Connection {
   public:
     explicit Connection(asio::io_context& context) : socket(context) {}
 
-    void say(const std::string& bytes) { socket.write_some(asio::buffer(bytes)); }
+    void send_bytes(const std::string& bytes) { socket.write_some(asio::buffer(bytes)); }
     /// What has come until `last` was seen; empty where it never is.
     std::string hear_until(const std::string& last) {
         const bool heard = test::wait_until([&] {
@@ -115,7 +115,7 @@ class IvyAgentTest : public testing::Test {
             acceptor.accept(connection->socket, error);
             return !error;
         });
-        if (!accepted) throw std::runtime_error("nobody connects");
+        if (!accepted) throw std::runtime_error("no one connects");
         return connection;
     }
 
@@ -149,10 +149,10 @@ TEST_F(IvyAgentTest, AnnouncesItselfAndSaysWhatItSubscribesTo) {
     Connection peer(context);
     peer.socket.connect({asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(std::stoi(words[1]))});
     EXPECT_EQ(peer.hear_until(hello_end), fmt::format("6 {}\002FlightWatt watch\n{}", words[1], hello_end));
-    peer.say("6 4321\002Link\n1 0\002^(\\S*) WORLD\n5 0\002\n");
-    peer.say("9 17\002\n");
+    peer.send_bytes("6 4321\002Link\n1 0\002^(\\S*) WORLD\n5 0\002\n");
+    peer.send_bytes("9 17\002\n");
     EXPECT_EQ(peer.hear_until("10 17"), "10 17\002\n");
-    peer.say("2 0\00220 ENERGY 57 11.62\003\n2 0\002ground WIND 1\003\n");
+    peer.send_bytes("2 0\00220 ENERGY 57 11.62\003\n2 0\002ground WIND 1\003\n");
     EXPECT_THAT(texts_of(*source, 2), ElementsAre("20 ENERGY 57 11.62", "ground WIND 1"));
 }
 
@@ -163,8 +163,8 @@ TEST_F(IvyAgentTest, ConnectsWithThoseThatAnnounceThemselvesOnce) {
     const auto peer = accept();
     EXPECT_THAT(peer->hear_until(hello_end), testing::EndsWith(hello_end));
     announce();
-    peer->say("6 " + std::to_string(acceptor.local_endpoint().port()) +
-              "\002Link\n5 0\002\n2 0\002replay20 ENERGY 57\003\n2 0\002time20 13.9\003\n");
+    peer->send_bytes("6 " + std::to_string(acceptor.local_endpoint().port()) +
+                     "\002Link\n5 0\002\n2 0\002replay20 ENERGY 57\003\n2 0\002time20 13.9\003\n");
     std::vector<IncomingMessage> messages;
     ASSERT_TRUE(test::wait_until([&] {
         source->receive(milliseconds(10), messages);
@@ -184,18 +184,19 @@ TEST_F(IvyAgentTest, OutlivesGarbageGoodByesAndAgentsThatVanish) {
     announce("4 2010 id other version\n");
     auto peer = connect();
     ASSERT_FALSE(peer->hear_until(hello_end).empty());
-    peer->say("6 4321\002Link\n5 0\002\nnonsense\n\n\xff\xfe\002\n8 0\002\n42 0\002what\n" + std::string(40'000, 'x'));
-    peer->say("\n2 0\00220 EN");
-    peer->say("ERGY 57\003\n");
+    peer->send_bytes("6 4321\002Link\n5 0\002\nnonsense\n\n\xff\xfe\002\n8 0\002\n42 0\002what\n" +
+                     std::string(40'000, 'x'));
+    peer->send_bytes("\n2 0\00220 EN");
+    peer->send_bytes("ERGY 57\003\n");
     EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ENERGY 57"));
-    peer->say("2 0\00220 CUT OFF IN THE MIDD");
+    peer->send_bytes("2 0\00220 CUT OFF IN THE MIDD");
     peer->socket.close();
-    peer = connect();  // it announces itself anew when it is alone
+    peer = connect();  // it announces itself again when it is alone
     ASSERT_FALSE(peer->hear_until(hello_end).empty());
-    peer->say("6 4321\002Link\n5 0\002\n0 0\002\n");
+    peer->send_bytes("6 4321\002Link\n5 0\002\n0 0\002\n");
     EXPECT_TRUE(peer->is_closed());
     peer = connect();
-    peer->say("6 4321\002Link\n5 0\002\n2 0\00220 ALIVE 1\003\n");
+    peer->send_bytes("6 4321\002Link\n5 0\002\n2 0\00220 ALIVE 1\003\n");
     EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ALIVE 1"));
     const auto& report = source->report();
     EXPECT_EQ(report.restarts, 2U);
@@ -216,15 +217,15 @@ TEST_F(IvyAgentTest, KeepsOneOfTwoConnectionsWithAnAgentAsTheOtherDoes) {
     };
     auto& kept = higher(*outgoing) > higher(*incoming) ? *incoming : *outgoing;
     const auto hello = fmt::format("6 {}\002Link\n5 0\002\n", acceptor.local_endpoint().port());
-    outgoing->say(hello);
+    outgoing->send_bytes(hello);
     ASSERT_FALSE(outgoing->hear_until(hello_end).empty());
-    incoming->say(hello);
+    incoming->send_bytes(hello);
     auto& retired = &kept == incoming.get() ? *outgoing : *incoming;
     EXPECT_FALSE(retired.hear_until("0 0\002\n").empty());
-    retired.say("2 0\00220 ALIVE 0\003\n0 0\002\n");  // what was sent before the other end knew still arrives
+    retired.send_bytes("2 0\00220 ALIVE 0\003\n0 0\002\n");  // what was sent before the other end knew still arrives
     EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ALIVE 0"));
     EXPECT_TRUE(retired.is_closed());
-    kept.say("2 0\00220 ALIVE 1\003\n");
+    kept.send_bytes("2 0\00220 ALIVE 1\003\n");
     EXPECT_THAT(texts_of(*source, 1), ElementsAre("20 ALIVE 1"));
 }
 

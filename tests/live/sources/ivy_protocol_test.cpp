@@ -40,7 +40,7 @@ TEST(IvyAnnouncement, IsReadAndWritten) {
     EXPECT_EQ(known->port, 40123);
     EXPECT_EQ(known->id, "7:1:40123");
     EXPECT_EQ(known->name, "Paparazzi server");
-    // Old agents say neither id nor name.
+    // Old agents state neither id nor name.
     const auto old = parse_announcement("3 40123\n");
     ASSERT_TRUE(old);
     EXPECT_EQ(old->id + old->name, "");
@@ -60,7 +60,7 @@ TEST(IvyLine, IsReadAndWritten) {
     EXPECT_THAT(split_groups(message->arguments), ElementsAre("20 ENERGY 57", "more"));
     EXPECT_THAT(split_groups("\003\003last"), ElementsAre("", "", "last"));
     EXPECT_THAT(split_groups(""), ElementsAre());
-    EXPECT_TRUE(parse_ivy_line("0 0 \002"));  // a blank before the mark is let pass
+    EXPECT_TRUE(parse_ivy_line("0 0 \002"));  // a blank before the mark is permitted
     for (const auto* wrong : {"", "2 3", "2\002x", "a 3\002x", "2 b\002x", "\002", "2 99999999999\002"}) {
         EXPECT_FALSE(parse_ivy_line(wrong)) << wrong;
     }

@@ -15,9 +15,9 @@ std::vector<double> times_of(const std::vector<IncomingMessage>& lines) {
 }
 
 std::vector<double> pushed(ClockFilter& filter, const std::vector<double>& times) {
-    std::vector<IncomingMessage> believed;
-    for (const double time_s : times) filter.push({time_s, "20 PONG"}, believed);
-    return times_of(believed);
+    std::vector<IncomingMessage> accepted;
+    for (const double time_s : times) filter.push({time_s, "20 PONG"}, accepted);
+    return times_of(accepted);
 }
 
 TEST(ClockFilter, ShortGapsAndLateLinesCountAtOnce) {
@@ -56,11 +56,11 @@ TEST(ClockFilter, AGapOfAnyDurationIsNoRestart) {
     for (const double step_s : {599.0, 601.0, 7200.0}) {
         ClockFilter filter;
         pushed(filter, {10.0});
-        std::vector<IncomingMessage> believed;
+        std::vector<IncomingMessage> accepted;
         bool restarts = false;
-        for (int i = 0; i < 5; ++i) restarts = filter.push({10.0 + step_s + i, "20 PONG"}, believed);
+        for (int i = 0; i < 5; ++i) restarts = filter.push({10.0 + step_s + i, "20 PONG"}, accepted);
         EXPECT_FALSE(restarts) << step_s;
-        EXPECT_EQ(believed.size(), 5U);
+        EXPECT_EQ(accepted.size(), 5U);
         EXPECT_EQ(filter.latest_s(), 14.0 + step_s);
     }
 }
@@ -68,18 +68,18 @@ TEST(ClockFilter, AGapOfAnyDurationIsNoRestart) {
 TEST(ClockFilter, ItsEndBelievesWhatLiesAhead) {
     ClockFilter filter;
     pushed(filter, {10.0, 500.0, 501.0});
-    std::vector<IncomingMessage> believed;
-    filter.flush(believed);
-    EXPECT_EQ(times_of(believed), (std::vector<double>{500.0, 501.0}));
+    std::vector<IncomingMessage> accepted;
+    filter.flush(accepted);
+    EXPECT_EQ(times_of(accepted), (std::vector<double>{500.0, 501.0}));
 }
 
 TEST(ClockFilter, ALogThatBeginsAnewIsARestart) {
     ClockFilter filter;
     pushed(filter, {1000.0, 1001.0});
-    std::vector<IncomingMessage> believed;
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push({1.0 + i, "20 PONG"}, believed));
-    EXPECT_TRUE(filter.push({5.0, "20 PONG"}, believed));
-    EXPECT_EQ(times_of(believed), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
+    std::vector<IncomingMessage> accepted;
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(filter.push({1.0 + i, "20 PONG"}, accepted));
+    EXPECT_TRUE(filter.push({5.0, "20 PONG"}, accepted));
+    EXPECT_EQ(times_of(accepted), (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0}));
     EXPECT_EQ(filter.latest_s(), 5.0);
 }
 
@@ -118,10 +118,10 @@ TEST(ClockFilter, AClockThatSteppedBackGoesOnFromWhereItWas) {
     pushed(filter, {99.0, 99.5, 99.8, 99.9, 100.0});
     std::vector<double> times;
     for (int i = 0; i < 20; ++i) times.push_back(70.0 + i);
-    const auto believed = pushed(filter, times);
-    ASSERT_EQ(believed.size(), 20U);
-    EXPECT_EQ(believed[0], 100.0) << "once five agree";
-    EXPECT_EQ(believed[19], 119.0);
+    const auto accepted = pushed(filter, times);
+    ASSERT_EQ(accepted.size(), 20U);
+    EXPECT_EQ(accepted[0], 100.0) << "once five agree";
+    EXPECT_EQ(accepted[19], 119.0);
     EXPECT_EQ(filter.steps_back(), 1U);
 }
 

@@ -1,6 +1,9 @@
 
+#include "mechanical/fit/error_analysis.h"
+
 #include "helpers/interval_coverage.h"
 #include "helpers/made_up_flights.h"
+#include "mechanical/fit/flight_weights.h"
 #include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/phase_fit.h"
 

@@ -1,5 +1,6 @@
+#include "mechanical/fit/flight_variation.h"
+
 #include "helpers/made_up_flights.h"
-#include "mechanical/fit/phase_fit.h"
 #include "mechanical/prediction.h"
 
 #include <cmath>

@@ -1,4 +1,6 @@
 
+#include "mechanical/fit/flight_weights.h"
+
 #include "helpers/made_up_flights.h"
 #include "mechanical/fit/phase_fit.h"
 #include "mechanical/mechanical_model.h"

@@ -60,7 +60,7 @@ TEST(JointFit, TakesAPlainOscillationForItsOwnFundamental) {
 }
 
 TEST(JointFit, DoesNotTakeOddHarmonicsForNoise) {
-    // The second harmonic is by far the strongest: theta is half of what stands out.
+    // The second harmonic is by far the strongest: theta is half of the strongest.
     const FrequencyRange range{std::numbers::pi, 500.0};
     const auto flights = one_flight(test::cruise_of(5.0, {0.4, 3.0, 0.0}, {0.0, 2.0, 0.4}), 1.5, 4);
     EXPECT_NEAR(found_frequency(flights, range), 10.0 * std::numbers::pi, 0.1);
@@ -77,7 +77,7 @@ TEST(JointFit, MovesASubharmonicToTheSimplestFrequency) {
 }
 
 TEST(JointFit, KeepsTheTrendOfAShortTakeOff) {
-    // Few samples do not tell 2 theta from theta by significance alone.
+    // Few samples do not distinguish 2 theta from theta by significance alone.
     int doubled = 0;
     for (unsigned seed = 1; seed <= 50; ++seed) {
         std::vector<PhaseSamples> flights;

@@ -194,7 +194,7 @@ TEST(PhaseFit, TheRangeEndsWhereTheHighestHarmonicOutrunsTheSamples) {
     const auto phase = test::cruise_of(2.0, {3.0}, {2.0});
     const auto coarse = test::record(phase, {600.0, 2.0, 0.0, 0.0}, random);
     const auto fine = test::record(phase, {600.0, 0.1, 0.0, 0.0}, random);
-    // Two samples a period are pi 300 / order; evenly spread ones tell both columns 1.9 rad of the phase below.
+    // Two samples a period are pi 300 / order; evenly spread ones show both columns 1.9 rad of the phase below.
     EXPECT_NEAR(admissible_frequencies(std::vector{fine, coarse}, {}).high_rad, (std::numbers::pi * 300.0 - 1.9) / 3.0,
                 0.07);
     EXPECT_NEAR(admissible_frequencies(std::vector{fine, coarse}, {.order = 5}).high_rad,

@@ -130,7 +130,7 @@ TEST(PowerRegression, RefusesColumnsThatAreNotDetermined) {
     EXPECT_TRUE(PowerRegression(flights).posterior(columns_of({PowerTerm::constant})).has_value());
 }
 
-/// What the joint normal distribution of all powers says, with their whole covariance. The drift's covariance with the
+/// What the joint normal distribution of all powers states, with their whole covariance. The drift's covariance with the
 /// mean ahead is its integral.
 TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
     const auto model = test::drag_and_climb_model();
@@ -139,7 +139,7 @@ TEST(PathPrediction, IsTheConditionalMeanOfTheJointDistribution) {
     const double remaining_s = 400.0;
     const auto ahead = term_values({.airspeed_m_per_s = 14.5, .climb_m_per_s = 0.1});
     const auto count = static_cast<Eigen::Index>(flown.size());
-    Eigen::MatrixXd rows(count + 1, 3);  // the last row is what lies ahead
+    Eigen::MatrixXd rows(count + 1, 3);  // the last row is what is ahead
     const auto set_row = [&](Eigen::Index i, const TermValues& values) {
         rows.row(i) << values[PowerTerm::drag], values[PowerTerm::climb], sum_of_terms_w(model, values);
     };

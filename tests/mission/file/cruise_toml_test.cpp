@@ -90,7 +90,7 @@ TEST(AirspeedToml, TakesThePlaceOfTheConditionsOfEarlierVersions) {
     EXPECT_THAT(refusal("[conditions]\nairspeed_m_per_s = 13\n[plan]"), testing::HasSubstr("state airspeed_m_per_s"));
 }
 
-/// Of a model file that knows how its models predict: which one says the power.
+/// Of a model file that knows how its models predict: which one states the power.
 TEST(AirspeedToml, NamesTheModelThatSaysThePowerAndItsError) {
     const auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");

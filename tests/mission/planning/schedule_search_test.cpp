@@ -87,7 +87,7 @@ SearchCase empty_case(double resistance_ohm) {
     return made;
 }
 
-/// The battery so large that the reserve lies between what the least and the greatest power leave.
+/// The battery so large that the reserve is between what the least and the greatest power leave.
 void set_reserve(double part, SearchCase& made) {
     const std::vector<std::size_t> first(made.choices.slots.size(), 0);
     double greatest_w = 0.0;
@@ -140,7 +140,7 @@ struct RandomCase {
     bool dwell = false;
     bool fixed = false;
     bool running = false;
-    bool alike = false;  ///< slots of equal duration, and utilities that are whole numbers
+    bool equal_slots = false;  ///< slots of equal duration, and utilities that are whole numbers
 };
 
 SearchCase random_case(std::mt19937& random, const RandomCase& kind) {
@@ -150,19 +150,19 @@ SearchCase random_case(std::mt19937& random, const RandomCase& kind) {
     const auto count = [&](int low, int high) {
         return static_cast<std::size_t>(std::uniform_int_distribution<int>(low, high)(random));
     };
-    auto made = empty_case(kind.alike ? 0.0 : uniform(0.0, 0.3));
+    auto made = empty_case(kind.equal_slots ? 0.0 : uniform(0.0, 0.3));
     auto& choices = made.choices;
     choices.free_choices = count(1, 3);
     const auto all = choices.free_choices + (kind.fixed ? count(0, 1) : 0);
     for (std::size_t c = 0; c < all; ++c) {
-        choices.utility_per_s.push_back(kind.alike ? std::round(uniform(0, 5)) : uniform(0, 5));
+        choices.utility_per_s.push_back(kind.equal_slots ? std::round(uniform(0, 5)) : uniform(0, 5));
         made.dynamics.compute_w.push_back(uniform(0.5, 4));
     }
     const auto slots = count(1, all == 4 ? 7 : 8);
     for (std::size_t i = 0; i < slots; ++i) {
         std::optional<std::size_t> fixed;
         if (kind.fixed && uniform(0, 1) < 0.3) fixed = count(0, static_cast<int>(all) - 1);
-        add_slot(kind.alike ? 10.0 : uniform(1, 10), kind.alike ? 5.0 : uniform(2, 8), fixed, made);
+        add_slot(kind.equal_slots ? 10.0 : uniform(1, 10), kind.equal_slots ? 5.0 : uniform(2, 8), fixed, made);
     }
     if (kind.dwell) choices.dwell_s = uniform(0, 40);
     if (kind.running) choices.running = {count(0, static_cast<int>(choices.free_choices) - 1), uniform(0, 40)};
@@ -201,7 +201,7 @@ TEST(ScheduleSearch, FindsTheBestOfAllThatCanBeEnumerated) {
     EXPECT_GT(feasible, 400);
 }
 
-/// So many slots and choices, with no two slots alike.
+/// So many slots and choices, with no two slots equal.
 SearchCase large_case(std::size_t slots, std::size_t choices, double dwell_s) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.9, 1.1);

@@ -102,7 +102,7 @@ TEST(SimulatedPlan, IsTheBestOfAllSimulatedSchedules) {
     EXPECT_GE(feasible, 5);
 }
 
-/// Of small_missions.h, beside all schedules; studies/planning takes many.
+/// Of small_missions.h, next to all schedules; studies/planning takes many.
 class SmallMissions : public testing::TestWithParam<unsigned> {};
 
 TEST_P(SmallMissions, HaveNoBetterScheduleThanThePlan) {
@@ -222,7 +222,7 @@ TEST(PlanRest, AnswersALearnedFactorOnAPackWhoseVoltageFalls) {
 
 TEST(SimulatedPlanStudy, KeepsTheReserveWithAProbability) {
     auto mission = thevenin_plan()(1800.0);
-    EXPECT_THROW(plan_mission(mission, 0.95), InputError) << "a model that does not say how flights differ";
+    EXPECT_THROW(plan_mission(mission, 0.95), InputError) << "a model that does not state how flights differ";
     for (const auto phase : flight::all_phases) {
         mission.setup.mechanical->phases[phase].flights = 5;
         mission.setup.mechanical->phases[phase].level_spread = {5, 0.5, 0.1, 20.0};

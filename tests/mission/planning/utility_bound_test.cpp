@@ -28,7 +28,7 @@ TEST(ConcaveHull, IsTheLeastConcaveCurveAboveItsPoints) {
         for (std::size_t i = 0; i < hull.size(); ++i) {
             const bool is_given =
                 std::ranges::any_of(points, [&](const auto& p) { return p.x == hull[i].x && p.y == hull[i].y; });
-            EXPECT_TRUE(is_given) << "corners are points: nothing concave lies lower";
+            EXPECT_TRUE(is_given) << "corners are points: nothing concave is lower";
             if (i == 0) continue;
             const auto& a = hull[i - 1];
             const auto& b = hull[i];

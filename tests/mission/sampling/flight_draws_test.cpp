@@ -107,8 +107,8 @@ TEST(FlightDraws, LeaveOutFlightsThatDoNotCount) {
     auto mission = of_flights({19.0, 20.0, 21.0}, {1000.0, 1100.0, 4000.0});
     const auto cruise = flight::Phase::cruise;
     mission.setup.mechanical->flights[2].phases[cruise]->weight = 0.0;
-    const auto said = describe(collect_uncertainty(mission.setup).sources);
-    EXPECT_NE(said.find("of 2 flights, Student t with 1 degree of freedom"), std::string::npos) << said;
+    const auto printed = describe(collect_uncertainty(mission.setup).sources);
+    EXPECT_NE(printed.find("of 2 flights, Student t with 1 degree of freedom"), std::string::npos) << printed;
 }
 
 TEST(FlightDraws, SayWhereCorrelationsAreNotKnown) {
@@ -275,10 +275,11 @@ TEST(FlightDraws, LeaveAloneWhatTheMissionStates) {
     EXPECT_EQ(spreads.duration_sd_s[flight::Phase::cruise], 0.0);
     EXPECT_EQ(apply_draw(mission.setup, spreads, draw_normals(count_normals(mission.setup), 1, 1)).battery.capacity_ah,
               mission.setup.battery.capacity_ah);
-    const auto said = describe(spreads.sources);
-    EXPECT_NE(said.find("not drawn: "), std::string::npos);
-    EXPECT_NE(said.find("cruise duration (fixed, as the mission states it without duration_sd_s)"), std::string::npos);
-    EXPECT_NE(said.find("capacity (fixed, as the mission states capacity_ah without capacity_sd_percent)"),
+    const auto printed = describe(spreads.sources);
+    EXPECT_NE(printed.find("not drawn: "), std::string::npos);
+    EXPECT_NE(printed.find("cruise duration (fixed, as the mission states it without duration_sd_s)"),
+              std::string::npos);
+    EXPECT_NE(printed.find("capacity (fixed, as the mission states capacity_ah without capacity_sd_percent)"),
               std::string::npos);
     mission.setup.uncertainty.duration_sd_s[flight::Phase::cruise] = 7.0;
     mission.setup.uncertainty.capacity_sd_percent = 2.0;

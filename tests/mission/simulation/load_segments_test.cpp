@@ -73,14 +73,14 @@ TEST(LoadSegment, ClocksAPhaseFlownLonger) {
     const auto as_fitted = load_of(mission)[1];
     mission.setup.duration_s[flight::Phase::cruise] = 900.0;
     mission.schedule[1].end_s = 900.0;
-    const auto stretched = load_of(mission)[1];
+    const auto scaled = load_of(mission)[1];
     mission.setup.phase_clock = mechanical::PhaseTimeScaling::absolute;
     const auto absolute = load_of(mission)[1];
     for (const double t : {0.0, 100.0, 450.0, 900.0}) {
-        EXPECT_NEAR(mechanical_w(stretched, 28.0 + t), mechanical_w(as_fitted, 28.0 + t / 1.5), 1e-12);
+        EXPECT_NEAR(mechanical_w(scaled, 28.0 + t), mechanical_w(as_fitted, 28.0 + t / 1.5), 1e-12);
         EXPECT_NEAR(mechanical_w(absolute, 28.0 + t), power_w(cruise, t), 1e-12);
     }
-    EXPECT_NEAR(mechanical_energy_j(stretched, 928.0), 1.5 * mechanical_energy_j(as_fitted, 628.0), 1e-8);
+    EXPECT_NEAR(mechanical_energy_j(scaled, 928.0), 1.5 * mechanical_energy_j(as_fitted, 628.0), 1e-8);
 }
 
 /// State of charge after the mission's own schedule, segment by segment.

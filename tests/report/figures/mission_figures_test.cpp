@@ -20,7 +20,7 @@ Figure figure_of(const std::string& csv) {
 
 TEST(ProfileFigure, ShowsIntervals) {
     const auto figure = figure_of("fps,power_w,standard_error_w\n1,2,0.5\n2,4,0.25\n3,6,0.5\n");
-    const auto& panel = figure.spec["concat"][0]["layer"][0];  // beside the panel's name
+    const auto& panel = figure.spec["concat"][0]["layer"][0];  // next to the panel's name
     EXPECT_EQ(panel["layer"].size(), 3U) << "line, intervals, points";
     const auto rows = panel["data"]["values"].get<std::string>();
     EXPECT_THAT(rows, HasSubstr("2,4,0.25,3.51001,4.48999,"));

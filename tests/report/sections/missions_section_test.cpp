@@ -99,9 +99,9 @@ TEST(MissionSections, ShowWhereTheBatteryCannotDeliver) {
     auto weak = paper_mission("phased");
     weak.setup.battery.resistance_ohm = 1.0;
     const auto sections = mission_sections(simulate_for_report({weak}));
-    bool said = false;
-    for (const auto& section : sections) said = said || section.html.find("cannot deliver") != std::string::npos;
-    EXPECT_TRUE(said);
+    bool printed = false;
+    for (const auto& section : sections) printed = printed || section.html.find("cannot deliver") != std::string::npos;
+    EXPECT_TRUE(printed);
 }
 
 using testing::Not;

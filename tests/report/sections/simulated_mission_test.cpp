@@ -41,10 +41,10 @@ TEST(SimulateForReport, TellsMissionsOfOneNameApart) {
 }
 
 TEST(SimulateForReport, TellsHowFarItIs) {
-    std::vector<std::pair<std::size_t, std::size_t>> told;
+    std::vector<std::pair<std::size_t, std::size_t>> reported;
     simulate_for_report({test::paper_mission("phased"), test::paper_mission("phased")},
-                        [&](std::size_t done, std::size_t all) { told.emplace_back(done, all); });
-    EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
+                        [&](std::size_t done, std::size_t all) { reported.emplace_back(done, all); });
+    EXPECT_EQ(reported, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {1, 2}}));
 }
 
 TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
@@ -188,7 +188,7 @@ TEST(MissionAnswer, SaysWhichModelIsUsedAndHowItPredicts) {
 TEST(MissionAnswer, SaysWhyThereIsNone) {
     auto simulated = flown("phased");
     const auto answer = assess_mission(simulated, [](const mission::MissionReadOptions&) -> mission::MissionVariant {
-        throw InputError({"gone.toml"}, "it is gone", "look for it");
+        throw InputError({"absent.toml"}, "it is absent", "find it");
     });
     EXPECT_FALSE(answer.reach);
     EXPECT_THAT(card_lines(simulated, answer), Contains(HasSubstr("cannot be read again")));

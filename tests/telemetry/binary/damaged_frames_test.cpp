@@ -32,7 +32,7 @@ char any_byte(Random& random) { return static_cast<char>(below(random, 256)); }
 /// A frame, or what became of it.
 struct Piece {
     std::string bytes;
-    std::string text;  ///< of the message; empty where it is damaged, or says nothing
+    std::string text;  ///< of the message; empty where it is damaged, or states nothing
     bool is_damaged = false;
     std::string before = {};  ///< the text, where it is damaged
 };
@@ -134,7 +134,7 @@ std::size_t collisions_in(const std::vector<Piece>& log, Framing framing) {
     return count;
 }
 
-/// Decodes a log, some of whose frames are damaged, and sets what was found beside what is whole.
+/// Decodes a log, some of whose frames are damaged, and sets what was found next to what is whole.
 void try_log(unsigned seed, Framing framing, LinkVersion version, const MessageDictionary& dictionary, Tally& tally) {
     Random random(seed);
     auto log = a_log(random, framing, version, dictionary);
@@ -221,7 +221,7 @@ std::string energy_with(Framing framing, const std::function<bool(const std::str
     throw std::logic_error("no frame is as asked for");
 }
 
-/// One byte is missing between two frames: the last of the first or the first of the second, which are alike.
+/// One byte is missing between two frames: the last of the first or the first of the second, which are equal.
 TEST(DamagedFrames, AreBothFoundWhereTheyShareTheByteThatOneHasLost) {
     const auto dictionary = test::binary_dictionary();
     for (const auto framing : {Framing::card, Framing::link, Framing::xbee}) {
