@@ -211,14 +211,16 @@ for (const colorScheme of ["light", "dark"])
       assert.equal(words(`${await page.locator("main h1").innerText()} ${await page.locator("dl.answer").innerText()}`), terminal);
       const { bottom } = await page.locator("dl.answer dd").nth(2).evaluate((line) => line.getBoundingClientRect());
       assert.ok(bottom < 900, "the time in the air is on the first screen");
-      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the screen");
+      assert.ok(await page.evaluate(() => document.getElementById("answer").scrollWidth <= innerWidth), "no line is wider than the screen");
       await page.locator("#answer summary").first().click();
       assert.match(await page.locator("#answer pre").first().innerText(), /^BATT_LOW_MAH \d+$/m);
       assert.ok(!(await page.content()).includes(folder), "no path of this machine");
-      assert.deepEqual((await seriousFaults(page, "#answer")).map(({ id }) => id), []);
       assert.deepEqual(faults, []);
       await page.screenshot({ path: path.join(screenshots, `answer-${colorScheme}-${width}.png`), fullPage: true });
       await page.context().close();
+      const { page: scripted } = await open("answer/answer.html", { colorScheme, viewport: { width, height: 900 } }); // axe needs timers
+      assert.deepEqual((await seriousFaults(scripted, "#answer")).map(({ id }) => id), []);
+      await scripted.context().close();
     });
 
 test("a row or a cell, by mouse or keyboard, changes the curve", async () => {
