@@ -109,7 +109,7 @@ async function withMinutes(spec) {
 }
 
 async function render(wanted, room, factor) {
-  const { config } = wanted; // legends are one below another where they are not beside each other
+  const { config } = wanted; // legends in rows
   const spec = width < 420 ? { ...wanted, config: { ...config, legend: { ...config.legend, layout: { top: { direction: "vertical", anchor: "start", margin: 2 } } } } } : wanted;
   const view = await viewOf(readable(flattened(fitWidth(spec, room, width), factor)));
   const svg = await view.toSVG();

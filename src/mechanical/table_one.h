@@ -8,7 +8,7 @@
 
 namespace flightwatt::mechanical {
 
-/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH", or the reason why there is none.
+/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH", or why it is absent.
 enum class TableIntervals { absent, present };
 
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase with four significant digits, and
