@@ -17,8 +17,9 @@
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
+#include "exchange/failsafe_parameters.h"
 #include "mission/mission_file.h"
-#include "report/html.h"
+#include "report/answer_section.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "stages.h"
@@ -110,13 +111,35 @@ void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft&
     }
 }
 
-/// Writes the report of a folder and its mission; returns its name.
-std::string write_page(const cli::StageCall& call, const std::filesystem::path& folder,
+/// The failsafe of each autopilot as flightwatt export writes it, or why it is absent.
+std::vector<std::pair<std::string, std::string>> failsafe_texts(const std::optional<answer::FailsafeCard>& card,
+                                                                const mission::MissionSetup& mission) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    if (!card) return texts;
+    const exchange::EstimatorInput aircraft{.model = mission.mechanical, .battery = mission.battery};
+    const auto add = [&](const char* name, const auto& write) {
+        auto& text = texts.emplace_back(fmt::format("Failsafe for {}, to paste", name), "").second;
+        try {
+            text = write(aircraft, *card).text;
+        } catch (const InputError& error) {
+            text = fmt::format("none: {}", error.what());
+        }
+    };
+    add("ArduPilot", exchange::to_failsafe_ardupilot);
+    add("PX4", exchange::to_failsafe_px4);
+    add("INAV", exchange::to_failsafe_inav);
+    add("Paparazzi", exchange::to_failsafe_paparazzi);
+    return texts;
+}
+
+/// Writes the page of an answer, with the report of its folder and mission; returns its name.
+std::string write_page(const cli::StageCall& call, const cli::AircraftAnswer& answer,
                        const mission::MissionVariant& mission) {
-    const auto file = folder / "answer.html";
+    const auto file = std::filesystem::path(answer.folder) / "answer.html";
     report::ReportInput input;
-    input.out = folder;
+    input.out = answer.folder;
     input.missions = {mission};
+    input.front = report::answer_section(answer, failsafe_texts(answer.failsafe, setup_of(mission)));
     const report::ReportLog log{[&](const std::string& text) {
         cli::add_diagnostic(call, {Severity::note, "the page", text});
     }};
@@ -174,7 +197,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     }
     const auto mission = mission::read_mission(mission_file);
     add_failsafe(arguments, aircraft, setup_of(mission), answer);
-    if (!arguments.no_page) answer.page = write_page(call, folder, mission);
+    if (!arguments.no_page) answer.page = write_page(call, answer, mission);
 }
 
 /// The same; an obstacle is the answer.

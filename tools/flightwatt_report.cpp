@@ -139,7 +139,7 @@ and .pdf (where rsvg-convert is). The model is the batch's own, with the bands t
     options.add("figure-width", arguments.figure_width, {.value = "WIDTH", .needs = {"figures"}},
                 "of those files: 3.5in, 89mm ...; their type is then set at 8 points");
     options.add("figure-height", arguments.figure_height, {.value = "HEIGHT", .needs = {"figures"}},
-                "at most, of those files; default: 4.5in with --figure-width");
+                "at most, of those files; default: 3/4 of --figure-width");
     options.add_choice<bool>("figure-font", arguments.figures_are_serif, {{"sans", false}, {"serif", true}},
                              {.value = "FONT", .needs = {"figures"}}, "of those files");
     options.add("published", arguments.published, cli::input_file("MODEL.toml"), "show Table I next to this model's");

@@ -13,12 +13,74 @@ const fitWidth = vm.runInThisContext(`(${await script("fit_width.js")})`);
 // The same files as in the page.
 for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
 const { vega, vegaLite } = globalThis;
+const letter = 0.54; // width of a letter [type sizes]; Vega's estimate of 0.8 leaves gaps and cuts names
+vega.textMetrics.width = ({ fontSize = 11 }, text) => letter * fontSize * String(text ?? "").length;
+const typed = letter * (32 / 3); // of a letter in papers [px]
 
 /** Without the transparent points of the page's tooltips, which only enlarge the file. */
 function still(part) {
   if (Array.isArray(part)) return part.map(still);
   if (part === null || typeof part !== "object") return part;
   return Object.fromEntries(Object.entries(part).filter(([key, value]) => !(key === "point" && value?.opacity === 0)).map(([key, value]) => [key, still(value)]));
+}
+
+const inside = (part, change) => (Array.isArray(part) ? part.map(change) : part !== null && typeof part === "object" ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, change(value)])) : part);
+
+/** With the panels' time axes in minutes where `isLong` holds for the panel's number. */
+function inMinutes(part, isLong, panel = 0) {
+  if (Array.isArray(part?.concat)) return { ...part, concat: part.concat.map((one, i) => inMinutes(one, isLong, i)) };
+  const changed = inside(part, (value) => inMinutes(value, isLong, panel));
+  const fields = ["x", "x2"].map((channel) => part?.encoding?.[channel]?.field).filter((field) => field?.endsWith("_s"));
+  if (fields.length === 0 || !isLong(panel)) return changed;
+  const name = (field) => field.replace(/_s$/, "_min");
+  changed.transform = [...(part.transform ?? []), ...fields.map((field) => ({ calculate: `datum.${field} / 60`, as: name(field) }))];
+  for (const channel of Object.values(changed.encoding)) {
+    if (fields.includes(channel.field)) channel.field = name(channel.field);
+    if (channel.scale?.domain && channel === changed.encoding.x) channel.scale = { ...channel.scale, domain: channel.scale.domain.map((s) => s / 60) };
+    if (channel === changed.encoding.x) channel.title = channel.title?.replace("[s]", "[min]");
+  }
+  return changed;
+}
+
+const titleOf = (panel, axis) => [panel, ...(panel.layer ?? [])].find(({ encoding }) => encoding?.[axis])?.encoding[axis].title;
+
+/** Takes the name of an axis from a panel. */
+function untitle(panel, axis) {
+  if (panel.encoding?.[axis]) panel.encoding[axis].title = null;
+  panel.layer?.forEach((layer) => untitle(layer, axis));
+}
+
+/** With as many ticks as have room for their labels, units below the names of low panels, and legends in few rows. */
+function readable(part, size = {}) {
+  const here = part?.width ? part : size;
+  const changed = inside(part, (value) => readable(value, here));
+  if (part?.type === "text" && part.limit) changed.limit = part.limit * (0.8 / letter); // by Vega's estimate
+  if (Array.isArray(part?.concat)) {
+    changed.spacing = { row: 54, column: 46 };
+    const titles = part.concat.map((panel) => [titleOf(panel, "x"), titleOf(panel, "y")]);
+    changed.concat.forEach((panel, i) => {
+      // An axis like that of the panel below, or at its left, has no name of its own.
+      if (titles[i + part.columns]?.[0] === titles[i][0]) untitle(panel, "x");
+      if (i % part.columns > 0 && titles[i - 1][1] === titles[i][1]) untitle(panel, "y");
+    });
+  }
+  if (part?.vconcat) {
+    changed.spacing = Math.min(part.spacing ?? 12, 12);
+    part.vconcat.forEach((panel, i) => i > 0 && titleOf(panel, "x") === titleOf(part.vconcat[i - 1], "x") && untitle(changed.vconcat[i - 1], "x"));
+  }
+  for (const [name, channel] of Object.entries(part?.encoding ?? {})) {
+    const now = changed.encoding[name];
+    if (channel.type === "quantitative" && (name === "x" ? here.width : name === "y" && here.height > 0)) {
+      now.axis = { tickCount: Math.max(2, Math.floor(name === "x" ? here.width / 50 : here.height / 28)), labelSeparation: name === "x" ? 8 : 2, ...channel.axis };
+      if (name === "y" && channel.title?.length * typed > here.height) now.title = channel.title.split(/ (?=\[)/);
+    }
+    const labels = channel.legend?.values ?? channel.scale?.domain;
+    if (channel.legend?.columns && Array.isArray(labels)) {
+      const widthOf = (columns) => Array.from({ length: columns }, (_, c) => 28 + typed * Math.max(...labels.filter((_, i) => i % columns === c).map((label) => Math.min(40, label.length)))).reduce((sum, w) => sum + w, 0);
+      now.legend.columns = [...labels.keys()].map((i) => labels.length - i).find((columns) => widthOf(columns) <= width - 60) ?? 1;
+    }
+  }
+  return changed;
 }
 
 /** With panels of `factor` times their height, 40 px at least; squares remain squares. */
@@ -30,8 +92,26 @@ function flattened(part, factor) {
 }
 
 const logger = vega.logger(vega.Error); // warnings are about legends of layers and about missing pointers
-async function render(spec, room, factor = 1) {
-  const view = new vega.View(vega.parse(vegaLite.compile(still(flattened(fitWidth(spec, room, width), factor)), { logger }).spec), { renderer: "none", logger });
+async function viewOf(spec) {
+  return new vega.View(vega.parse(vegaLite.compile(still(spec), { logger }).spec), { renderer: "none", logger }).runAsync();
+}
+
+/** The specification with times of more than five minutes in minutes. */
+async function withMinutes(spec) {
+  const view = await viewOf(spec);
+  const spanOf = (panel) => {
+    const [low, high] = view.scale(spec.concat ? `concat_${panel}_x` : "x").domain();
+    return high - low;
+  };
+  const changed = inMinutes(spec, (panel) => spanOf(panel) > 300);
+  view.finalize();
+  return changed;
+}
+
+async function render(wanted, room, factor) {
+  const { config } = wanted; // legends in rows
+  const spec = width < 420 ? { ...wanted, config: { ...config, legend: { ...config.legend, layout: { top: { direction: "vertical", anchor: "start", margin: 2 } } } } } : wanted;
+  const view = await viewOf(readable(flattened(fitWidth(spec, room, width), factor)));
   const svg = await view.toSVG();
   view.finalize();
   const [wide, tall] = ["width", "height"].map((side) => Number(svg.match(new RegExp(`<svg[^>]* ${side}="([\\d.]+)"`))[1]));
@@ -39,18 +119,22 @@ async function render(spec, room, factor = 1) {
 }
 
 for (const name of names) {
-  const spec = JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8"));
-  // The width of axes and legends is known after drawing: a figure that is too wide is drawn again with less room.
+  const spec = await withMinutes(JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8")));
+  // The size of axes and legends is known after drawing: a figure that is too large is drawn again with less room.
   let room = width;
-  let drawn = await render(spec, room);
-  for (let trial = 0; trial < 10 && drawn.wide > width; ++trial) {
-    room -= drawn.wide - width;
-    drawn = await render(spec, room);
-  }
-  // Axes, titles and legends keep their height: the panels' share is known from two drawings.
-  if (height > 0 && drawn.tall > height) {
-    const half = (await render(spec, room, 0.5)).tall;
-    drawn = await render(spec, room, 1 - (0.5 * (drawn.tall - height)) / Math.max(drawn.tall - half, 1));
+  let factor = 1;
+  let drawn = await render(spec, room, factor);
+  let widest = Infinity; // what smaller panels do not make smaller stays
+  let tallest = Infinity;
+  for (let trial = 0; trial < 12; ++trial) {
+    if (drawn.wide > width && drawn.wide < widest) {
+      widest = drawn.wide;
+      room -= drawn.wide - width;
+    } else if (height > 0 && drawn.tall > height && drawn.tall < tallest) {
+      [widest, tallest] = [Infinity, drawn.tall];
+      factor *= Math.max(0.5, 1 - (1.3 * (drawn.tall - height)) / drawn.tall);
+    } else break;
+    drawn = await render(spec, room, factor);
   }
   await writeFile(path.join(folder, `${name}.svg`), drawn.svg);
 }

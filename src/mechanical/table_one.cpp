@@ -61,15 +61,26 @@ std::vector<std::string> column_of(const PhaseModel& phase, std::size_t order) {
     return cells;
 }
 
-/// The 95 % intervals of column_of's cells; none where other frequencies fit almost as well, as those of the
-/// coefficients would be far wider than the curve's.
+/// Where other frequencies fit almost as well, intervals of the coefficients would be far wider than the curve's.
+constexpr auto open_frequency_reason = "other frequencies fit";
+constexpr auto no_errors_reason = "no errors known";
+constexpr auto fixed_frequency_reason = "not fitted";
+
+/// The 95 % intervals of column_of's cells, or the reason why a coefficient has none.
 std::vector<std::string> intervals_of(const PhaseModel& phase, std::size_t order) {
-    if (!phase.errors || phase.open_frequency) return std::vector<std::string>(2 * order + 2, "-");
+    if (!phase.errors || phase.open_frequency) {
+        auto cells = column_of(phase, order);
+        for (auto& cell : cells)
+            if (cell != "-") cell = phase.errors ? open_frequency_reason : no_errors_reason;
+        return cells;
+    }
     const auto intervals = coefficient_intervals(phase);
     auto cells = coefficient_cells(intervals.a0_w, intervals.cos_w, intervals.sin_w, order);
     const auto xi = [&](double omega) { return units::table_one_xi_from_rad(omega * phase.duration_s); };
     const auto& [low, high] = intervals.omega_rad_per_s;
-    cells.push_back(phase.errors->frequency_is_fixed ? "-" : as_printed(Interval{xi(low), xi(high)}));
+    cells.push_back(phase.fourier.cos_w.empty()        ? "-"
+                    : phase.errors->frequency_is_fixed ? fixed_frequency_reason
+                                                       : as_printed(Interval{xi(low), xi(high)}));
     return cells;
 }
 
@@ -135,13 +146,24 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
 
 std::string to_latex(const TextTable& table, std::string_view label) {
     auto cells = table;
-    std::string caption = "Constants for the mechanical energy model";
     cells.header.front().clear();
-    for (auto& heading : cells.header) {
+    std::string notes;
+    for (std::size_t column = cells.header.size(); column-- > 0;) {
+        auto& heading = cells.header[column];
         if (!heading.ends_with(interval_heading)) continue;
-        heading.clear();
-        caption = "Constants for the mechanical energy model (in brackets: 95 % intervals)";
+        const auto reason = cells.rows.front()[column];
+        if (reason != open_frequency_reason && reason != no_errors_reason) {
+            heading.clear();
+            continue;
+        }
+        notes = fmt::format("; no interval of the {}: {}", heading.substr(0, heading.find(' ')), reason) + notes;
+        const auto at = static_cast<std::ptrdiff_t>(column);
+        cells.header.erase(cells.header.begin() + at);
+        for (auto& row : cells.rows) row.erase(row.begin() + at);
     }
+    if (std::ranges::count(cells.header, "") > 1) notes = "; in brackets: 95 % intervals" + notes;
+    std::string caption = "Constants for the mechanical energy model";
+    if (!notes.empty()) caption += fmt::format(" ({})", notes.substr(2));
     auto text = flightwatt::to_latex(cells, caption, label);
     for (const auto& row : cells.rows)
         boost::replace_first(text, "\n" + row.front() + " & ", "\n" + row_name(row.front()) + " & ");

@@ -8,8 +8,7 @@
 
 namespace flightwatt::mechanical {
 
-/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH"; '-' where the model has no
-/// errors, or none for the frequency.
+/// Whether each phase has a column of the coefficients' 95 % intervals, "LOW to HIGH", or why it is absent.
 enum class TableIntervals { absent, present };
 
 /// The model as the paper's Table I: rows a0, a1, b1, ... and xi, a column a phase with four significant digits, and
@@ -23,7 +22,7 @@ TextTable table_one_comparison(const MechanicalModel& published, const Mechanica
                                TableIntervals intervals = TableIntervals::absent);
 
 /// Table I as a LaTeX table environment like the paper's: its caption on top, coefficients as $a_0$ ...
-/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets.
+/// $\xi$, numbers in mathematical mode, 95 % intervals in brackets; a phase without any has its reason in the caption.
 std::string to_latex(const TextTable& table, std::string_view label = "tab:mechanical-energy-model");
 
 }  // namespace flightwatt::mechanical

@@ -84,6 +84,7 @@ VegaJson in_type_of_papers(const VegaJson& theme, const FigureLayout& layout) {
     auto values = theme.flatten();
     for (auto& [path, value] : values.items())
         if (layout.width_pt && (path.ends_with("FontSize") || path.ends_with("/fontSize"))) value = type_pt * px_per_pt;
+    if (layout.width_pt) values["/style/panel-name/fontWeight"] = "normal";
     if (layout.is_serif) values["/font"] = "'Times New Roman', 'Liberation Serif', 'DejaVu Serif', serif";
     return values.unflatten();
 }
@@ -171,11 +172,11 @@ FigureFiles write_figures(const std::vector<Section>& sections, const WebFiles& 
     for (const auto* figure : figures)
         for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure->id + ending));
     make_directories(folder);
-    constexpr double default_height_pt = 4.5 * 72.0;
+    constexpr double landscape = 0.75;  // of the width
     const auto theme = in_type_of_papers(VegaJson::parse(web.theme).at("light"), layout);
     FigureFiles files{figures.size()};
     const double width_px = layout.width_pt ? *layout.width_pt * px_per_pt : default_width_px;
-    const double height_px = layout.height_pt.value_or(layout.width_pt ? default_height_pt : 0.0) * px_per_pt;
+    const double height_px = layout.height_pt.value_or(landscape * layout.width_pt.value_or(0.0)) * px_per_pt;
     std::vector<std::string> render{"node", (web.folder / "render.mjs").string(), folder.string(),
                                     fmt::format("{}", width_px), fmt::format("{}", height_px)};
     for (const auto* figure : figures) {

@@ -54,8 +54,8 @@ struct FigureFiles {
 /// The layout of figures for papers, in points (1/72 inch).
 struct FigureLayout {
     std::optional<double> width_pt;  ///< width, with type of 8 points
-    std::optional<double>
-        height_pt;  ///< maximum height; panels have at least 50 px. Default: 4.5 inches, if a width is given
+    /// Maximum height; panels have at least 40 px. Default: 3/4 of a given width
+    std::optional<double> height_pt;
     bool is_serif = false;
 };
 

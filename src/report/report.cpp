@@ -270,7 +270,8 @@ ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     std::stable_partition(sections.begin(), sections.end(), [](const Section& section) {
         return section.id == "packs" || section.id == "curves" || section.id == "quality-of-service";
     });
-    sections.insert(sections.begin(), summary_section(page.answers, batch.flights));
+    sections.insert(sections.begin(), summary_section(page.answers, batch.flights, input.front ? "h2" : "h1"));
+    if (input.front) sections.insert(sections.begin(), *input.front);
     if (auto notes = notes_section(page.answers)) sections.push_back(std::move(*notes));
     title = page_title(batch.flights, page.answers.missions.size());
     summary = summary_json(page, batch);

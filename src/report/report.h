@@ -39,6 +39,7 @@ struct ReportInput {
     std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery
     bool with_replay = false;                        ///< with the missions replayed on the flights
     std::vector<Outline> outlines = {};              ///< drawn below the flown tracks
+    std::optional<Section> front = {};               ///< before all others, with the heading of the page
 };
 
 /// The content of a report.

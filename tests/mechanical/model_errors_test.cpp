@@ -116,12 +116,33 @@ TEST(TableOne, CanHaveIntervals) {
     EXPECT_EQ(table.header[4], "cruise 95 %");
     EXPECT_EQ(table.rows[0][4], "27.12 to 27.32");    // 1.96 standard errors
     EXPECT_EQ(table.rows[7][4], "0.1795 to 0.1803");  // of xi = omega * 600 / 28
-    EXPECT_EQ(table.rows[0][2], "-");                 // no errors known
+    EXPECT_EQ(table.rows[0][2], "no errors known");
     model.phases[flight::Phase::cruise].errors->frequency_is_fixed = true;
+<<<<<<< HEAD
     EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "-");
     const auto compared = table_one_comparison(test::published_model(), model, TableIntervals::present);
     EXPECT_EQ(compared.header.size(), 11U);
     for (const auto& row : compared.rows) EXPECT_EQ(row.size(), 11U);
+=======
+    EXPECT_EQ(table_one(model, TableIntervals::present).rows[7][4], "not fitted");
+    const auto beside = table_one_comparison(test::published_model(), model, TableIntervals::present);
+    EXPECT_EQ(beside.header.size(), 11U);
+    for (const auto& row : beside.rows) EXPECT_EQ(row.size(), 11U);
+>>>>>>> 95542b97e7cdfd4c4f5eb9eafa830a5810b79b51
+}
+
+TEST(TableOneLatex, StatesInTheCaptionWhyAPhaseHasNoIntervals) {
+    auto model = test::published_model();
+    auto& cruise = model.phases[flight::Phase::cruise];
+    cruise.errors = PhaseErrors{1e-5, 0.05, {0.01, 0.02, 0.03}, {0.04, 0.05, 0.06}, 0.02, 1e9, false, 0.9, 0.1, 400.0};
+    auto text = to_latex(table_one(model, TableIntervals::present));
+    EXPECT_THAT(text, HasSubstr("(in brackets: 95 \\% intervals; no interval of the take-off: no errors known; no "
+                                "interval of the landing: no errors known)}"));
+    EXPECT_THAT(text, HasSubstr(" & take-off & cruise &  & landing & unit \\\\\n"));
+    cruise.open_frequency = true;
+    text = to_latex(table_one(model, TableIntervals::present));
+    EXPECT_THAT(text, HasSubstr("no interval of the cruise: other frequencies fit;"));
+    EXPECT_THAT(text, Not(HasSubstr("brackets")));
 }
 
 TEST(TableOneLatex, IsThePapersTable) {

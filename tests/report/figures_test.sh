@@ -40,9 +40,12 @@ for spec in specs:
 print(f"{len(specs)} figures")
 PYTHON
 
-# In a column of 3.5 inches nothing is wider, or taller than 4.2 inches, and type is of 8 points, 10.67 pixels.
-"$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" --figures "$scratch/column" --figure-width 3.5in --figure-height 4.2in --figure-font serif 2>/dev/null
-python3 - "$scratch/column" <<'PYTHON'
+# In one column and in two, figures are landscape, with type of 8 points, 10.67 pixels; no text is clipped or over another,
+# no tick without its label, and long times are in minutes.
+for width in 3.5 7; do
+    "$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" "$source/missions/paper/plan.toml" --figures "$scratch/column" --figure-width "${width}in" --figure-font serif 2>/dev/null
+    python3 "$(dirname "$0")/figure_texts.py" "$(python3 -c "print(96 * $width)")" "$scratch"/column/*.svg
+    python3 - "$scratch/column" <<'PYTHON'
 import glob, os, re, sys
 
 drawings = sorted(glob.glob(os.path.join(sys.argv[1], "*.svg")))
@@ -50,14 +53,20 @@ assert len(drawings) >= 8, drawings
 assert os.path.join(sys.argv[1], "flight-opterra_synthetic_01-power.svg") in drawings
 for drawing in drawings:
     svg = open(drawing, encoding="utf-8").read()
-    width = float(re.search(r'<svg[^>]* width="([\d.]+)"', svg).group(1))
-    assert 200 < width <= 336.5, (drawing, width)
-    height = float(re.search(r'<svg[^>]* height="([\d.]+)"', svg).group(1))
-    assert height <= 403.7, (drawing, height)
     assert "Serif" in svg and "DejaVu Sans" not in svg, drawing
     sizes = {float(size) for size in re.findall(r'font-size="([\d.]+)px"', svg)}
     assert sizes and all(abs(size - 32 / 3) < 0.01 for size in sizes), (drawing, sizes)
+    if "-power" in drawing or "schedules" in drawing:
+        assert "[min]" in svg and "[s]" not in svg, drawing
 PYTHON
+done
+
+# None is taller than is asked for.
+"$bin/flightwatt-report" "$source/missions/paper/phased.toml" --figures "$scratch/low" --figure-width 7in --figure-height 3in 2>/dev/null
+for drawing in "$scratch"/low/*.svg; do
+    tall=$(grep -o '<svg[^>]* height="[0-9]*' "$drawing" | grep -o '[0-9]*$')
+    ((tall <= 288)) || { echo "$drawing: $tall px" >&2 && exit 1; }
+done
 
 # Without node the specifications are written, and it is printed.
 tools=$scratch/tools

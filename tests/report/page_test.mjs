@@ -202,6 +202,27 @@ test("the page answers first: the worst mission, all others in a table, the airc
   await page.context().close();
 });
 
+for (const colorScheme of ["light", "dark"])
+  for (const width of [1440, 390])
+    test(`without script, the page of an answer begins with the lines of the terminal: ${colorScheme}, ${width} px`, async () => {
+      const { page, faults } = await open("answer/answer.html", { javaScriptEnabled: false, colorScheme, viewport: { width, height: 900 } });
+      const words = (text) => text.replace(/\s+/g, " ").trim();
+      const terminal = words(readFileSync(path.join(folder, "answer.txt"), "utf8")).replace(/; written by [^)]*\)| Page \S*$/g, "");
+      assert.equal(words(`${await page.locator("main h1").innerText()} ${await page.locator("dl.answer").innerText()}`), terminal);
+      const { bottom } = await page.locator("dl.answer dd").nth(2).evaluate((line) => line.getBoundingClientRect());
+      assert.ok(bottom < 900, "the time in the air is on the first screen");
+      assert.ok(await page.evaluate(() => document.getElementById("answer").scrollWidth <= innerWidth), "no line is wider than the screen");
+      await page.locator("#answer summary").first().click();
+      assert.match(await page.locator("#answer pre").first().innerText(), /^BATT_LOW_MAH \d+$/m);
+      assert.ok(!(await page.content()).includes(folder), "no path of this machine");
+      assert.deepEqual(faults, []);
+      await page.screenshot({ path: path.join(screenshots, `answer-${colorScheme}-${width}.png`), fullPage: true });
+      await page.context().close();
+      const { page: scripted } = await open("answer/answer.html", { colorScheme, viewport: { width, height: 900 } }); // axe needs timers
+      assert.deepEqual((await seriousFaults(scripted, "#answer")).map(({ id }) => id), []);
+      await scripted.context().close();
+    });
+
 test("a row or a cell, by mouse or keyboard, changes the curve", async () => {
   const { page, faults } = await open("six.html");
   const shown = page.locator("article.mission:visible");

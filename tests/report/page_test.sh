@@ -25,6 +25,9 @@ quiet "$bin/flightwatt-batch" "$source/logs" -o "$pages/six"
 quiet "$bin/flightwatt-report" "$pages/six" "$source"/missions/paper/*.toml -o "$pages/six.html" --json
 mv "$pages/stdout" "$pages/six.json"
 
+quiet "$bin/flightwatt" "$source/logs" --capacity 3.2 -o "$pages/answer"
+mv "$pages/stdout" "$pages/answer.txt"
+
 browse() {
     PAGES=$pages FLIGHTS=$flights FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
         node --test --test-reporter=spec "$source/tests/report/page_test.mjs"

@@ -85,12 +85,6 @@ std::string counted(std::size_t count, const char* of) {
     return fmt::format("{} {}{}", count, of, count == 1 ? "" : "s");
 }
 
-std::string aircraft_line(const AircraftAnswer& answer) {
-    const auto name = answer.name.empty() || answer.name == answer.aircraft ? "" : fmt::format(" ({})", answer.name);
-    return fmt::format("{}{}: {} used of {}", answer.aircraft, name, counted(answer.used, "flight"),
-                       counted(answer.logs, "log"));
-}
-
 std::string power_line(const Endurance& endurance) {
     if (!endurance.power_w.value) return "unknown: " + endurance.power_w.unknown;
     auto text = fmt::format("{:.0f} W", *endurance.power_w.value);
@@ -174,13 +168,19 @@ std::string failsafe_line(const AircraftAnswer& answer) {
     text += card.chances_known ? fmt::format("; too late in {:.0f} of 100 flights",
                                              units::percent_per_whole * (1.0 - card.probability))
                                : std::string("; chances unknown");
+    return text;
+}
+
+std::string failsafe_command(const AircraftAnswer& answer) {
+    if (!answer.failsafe) return "";
+    const auto& card = *answer.failsafe;
     // Of the mission, which has the payload and the reserve that were asked for.
     auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-ardupilot", answer.folder);
     if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
     if (answer.endurance.airspeed_m_per_s.value)
         command += fmt::format(" --airspeed {:.2f}", *answer.endurance.airspeed_m_per_s.value);
-    return text + "; written by " + command + " (or -px4, -inav, -paparazzi)";
+    return "; written by " + command + " (or -px4, -inav, -paparazzi)";
 }
 
 }  // namespace
@@ -230,34 +230,46 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("page", &R::page, "file of the report; empty without one"));
 }
 
-std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
-    constexpr std::size_t label_width = 10;
-    auto text = wrapped(aircraft_line(answer), columns) + "\n";
+std::string aircraft_line(const AircraftAnswer& answer) {
+    const auto name = answer.name.empty() || answer.name == answer.aircraft ? "" : fmt::format(" ({})", answer.name);
+    return fmt::format("{}{}: {} used of {}", answer.aircraft, name, counted(answer.used, "flight"),
+                       counted(answer.logs, "log"));
+}
+
+std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer) {
+    if (!answer.no_answer.empty()) return {{"No answer", answer.no_answer, ""}};
+    std::vector<AnswerLine> lines;
     std::set<std::string> given;
-    const auto add = [&](const std::string& label, const std::string& line) {
-        if (line.empty()) return;
-        const bool is_repeated = !given.insert(line).second;  // a reason why nothing is known
-        auto lines = wrapped(is_repeated ? "unknown, for the same reason" : line, columns - label_width, "");
-        boost::algorithm::replace_all(lines, "\n", "\n" + std::string(label_width, ' '));
-        text += fmt::format("{:<{}}{}\n", label, label_width, lines);
+    const auto add = [&](const std::string& label, const std::string& text, const std::string& on_terminal = "") {
+        if (text.empty()) return;
+        const bool is_repeated = !given.insert(text).second;  // a reason why nothing is known
+        lines.push_back({label, is_repeated ? "unknown, for the same reason" : text, on_terminal});
     };
-    if (!answer.no_answer.empty()) {
-        add("No answer", answer.no_answer);
-        return text;
-    }
     add(answer.endurance.is_hover ? "Hover" : "Cruise", power_line(answer.endurance));
     add("Time", time_line(answer));
     add("Distance", distance_line(answer));
     add("Speeds", speeds_line(answer.endurance));
     add("Pack", pack_line(answer.pack));
     add("Health", health_line(answer.packs));
-    add("Failsafe", failsafe_line(answer));
+    add("Failsafe", failsafe_line(answer), failsafe_command(answer));
     const auto& error = answer.prediction_error_percent;
     add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,
                                              error.basis)
                                : "unknown: " + error.unknown);
     add("Limits", fmt::format("{}", fmt::join(answer.endurance.notes, "; ")));
-    add("Page", answer.page);
+    return lines;
+}
+
+std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
+    constexpr std::size_t label_width = 10;
+    auto text = wrapped(aircraft_line(answer), columns) + "\n";
+    auto lines = answer_lines(answer);
+    if (!answer.page.empty()) lines.push_back({"Page", answer.page, ""});
+    for (const auto& line : lines) {
+        auto wrapped_text = wrapped(line.text + line.on_terminal, columns - label_width, "");
+        boost::algorithm::replace_all(wrapped_text, "\n", "\n" + std::string(label_width, ' '));
+        text += fmt::format("{:<{}}{}\n", line.label, label_width, wrapped_text);
+    }
     return text;
 }
 

@@ -38,6 +38,19 @@ struct AircraftAnswer {
 };
 Fields<AircraftAnswer> record_fields(const AircraftAnswer*);
 
+/// What is asked and its answer: the value with what it rests on, or why it is unknown.
+struct AnswerLine {
+    std::string label;
+    std::string text;
+    std::string on_terminal;  ///< ends the text where files of this computer are named
+};
+
+/// Returns "2A002500 (ArduCopter): 3 flights used of 3 logs".
+std::string aircraft_line(const AircraftAnswer& answer);
+
+/// Returns the lines below it: where nothing is answered, the reason alone.
+std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer);
+
 /// At most ten lines for a pilot, broken between words at `columns`.
 std::string answer_text(const AircraftAnswer& answer, std::size_t columns);
 

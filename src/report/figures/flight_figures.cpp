@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -41,13 +40,9 @@ constexpr int decimals = 2;  // of times and values
 
 /// A row for each phase.
 FigureData phase_rows(const flight::FlightPhases& phases) {
-    FigureData data({"start_s", "end_s", "middle_s"}, {"phase", "word"});
-    for (const auto& sortie : phases.sorties) {
-        for (const auto& span : sortie.phases) {
-            data.add({span.start.time_s, span.end.time_s, std::midpoint(span.start.time_s, span.end.time_s)},
-                     {to_string(span.phase), phase_word(span.phase)});
-        }
-    }
+    FigureData data({"start_s", "end_s"}, {"phase"});
+    for (const auto& sortie : phases.sorties)
+        for (const auto& span : sortie.phases) data.add({span.start.time_s, span.end.time_s}, {phase_word(span.phase)});
     return data;
 }
 
@@ -127,7 +122,6 @@ Figure flight_figure(const ReportFlight& flight, const mechanical::MechanicalMod
     auto panels = VegaJson::array();
     auto views = VegaJson::array();
     const auto add_panel = [&](VegaJson panel, VegaJson values) {
-        if (!panels.empty()) panel["layer"].erase(2);  // only the first panel names the phases
         views.push_back(fmt::format("panel_{}", views.size()));
         values["name"] = views.back();
         panels.push_back(fill_template(std::move(panel), values));

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <utility>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,12 +30,15 @@ std::vector<double> with_thirds(const std::vector<double>& profiled) {
     return nodes;
 }
 
+/// "key bits" for "key_bits".
+std::string in_words(const std::string& parameter) { return boost::replace_all_copy(parameter, "_", " "); }
+
 std::vector<QosAxis> axes_of(const compute::ComputeModel& compute) {
     std::vector<QosAxis> axes;
     for (std::size_t c = 0; c < compute.components.size(); ++c) {
         const auto& [name, profile] = compute.components[c];
         for (std::size_t p = 0; p < profile.parameters.size(); ++p) {
-            axes.push_back({c, p, name + " " + profile.parameters[p], with_thirds(profile.axes[p])});
+            axes.push_back({c, p, name + " " + in_words(profile.parameters[p]), with_thirds(profile.axes[p])});
         }
     }
     return axes;
@@ -81,7 +85,7 @@ VegaJson cell_rows(const QosMap& map) {
 std::string line_name(const compute::PowerProfile& profile, const std::vector<double>& qos) {
     std::vector<std::string> parts;
     for (std::size_t p = 1; p < qos.size(); ++p) {
-        parts.push_back(fmt::format("{} {:g}", profile.parameters[p], qos[p]));
+        parts.push_back(fmt::format("{} {:g}", in_words(profile.parameters[p]), qos[p]));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -112,7 +116,8 @@ VegaJson panel_of(const compute::Component& component, VegaJson panel) {
         tooltip.erase(2);
         nodes["encoding"].erase("color");
     }
-    const auto parameter = profile.parameters.empty() ? "no parameter" : valid_utf8(profile.parameters.front());
+    const auto parameter =
+        profile.parameters.empty() ? "no parameter" : valid_utf8(in_words(profile.parameters.front()));
     return fill_template(
         std::move(panel),
         {{"nodes", node_rows(profile).json()}, {"parameter", parameter}, {"component", valid_utf8(component.name)}});

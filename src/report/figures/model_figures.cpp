@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,16 @@ VegaJson model_rows(const mechanical::PhaseModel& phase) {
     return data.json();
 }
 
+/// The name of a model for an axis.
+std::string words_of_model(const std::string& model) {
+    static const std::map<std::string, std::string> words{{"constant_mean", "mean power"},
+                                                          {"fourier", "Fourier series"},
+                                                          {"by_phase", "chosen by phase"},
+                                                          {"physical", "physical model"}};
+    const auto found = words.find(model);
+    return found == words.end() ? model : found->second;
+}
+
 FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
     FigureData data({"error_wh", "measured_wh", "predicted_wh"}, {"model", "flight"});
     for (const auto& model : model_names(flights)) {
@@ -40,7 +51,8 @@ FigureData error_rows(std::span<const mechanical::ValidatedFlight> flights) {
             const auto energy = predicted_energy(flight, model, std::nullopt);
             if (!energy) continue;
             const double predicted_wh = energy->estimate.energy_wh;
-            data.add({predicted_wh - energy->measured_wh, energy->measured_wh, predicted_wh}, {model, flight.flight});
+            data.add({predicted_wh - energy->measured_wh, energy->measured_wh, predicted_wh},
+                     {words_of_model(model), flight.flight});
         }
     }
     return data;
@@ -97,8 +109,8 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
                     const std::string& id) {
     auto drawn = VegaJson::array({"model"});
     const auto& cruise = bands[flight::Phase::cruise];
-    if (!cruise.time_s.empty()) drawn.push_back("95 % band of the mean");
-    if (!cruise.flights_low_w.empty()) drawn.push_back("envelope of the flights");
+    if (!cruise.time_s.empty()) drawn.push_back("95 % band");
+    if (!cruise.flights_low_w.empty()) drawn.push_back("range of the flights");
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         const auto& band = bands[phase];
@@ -109,8 +121,10 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
                           {"band", area_rows(fitted, band.time_s, band.low_95_w, band.high_95_w)},
                           {"model", model_rows(fitted)}});
     }
-    return new_figure("model", id, "Power of each phase (Eq. 1).",
-                      fmt::format("Mechanical power model {} over each phase.", model.name), {{"panels", panels}});
+    return new_figure(
+        "model", id,
+        "Power of each phase (Eq. 1), with the 95 % band of the mean and the range of the flights where they are known.",
+        fmt::format("Mechanical power model {} over each phase.", model.name), {{"panels", panels}});
 }
 
 Figure validation_figure(std::span<const mechanical::ValidatedFlight> flights, const std::string& id) {

@@ -173,7 +173,7 @@ std::string missions_table(const RankedCards& ranked) {
 
 }  // namespace
 
-Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights) {
+Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights, std::string_view heading) {
     const auto ranked = ranked_cards(answers);
     Section section{"missions", ranked.cards.empty() ? "Aircraft" : "Missions"};
     section.place = SectionPlace::front;
@@ -182,7 +182,7 @@ Section summary_section(const PageSummary& answers, std::span<const ReportFlight
         section.html += fmt::format("<p class=\"aircraft\"><b>{}</b> {}</p>\n", html_escaped(line.substr(0, name)),
                                     html_escaped(line.substr(name + 2)));
     }
-    section.html += fmt::format("<h1 id=\"missions-title\">{}</h1>\n<div class=\"front\">\n",
+    section.html += fmt::format("<{0} id=\"missions-title\">{1}</{0}>\n<div class=\"front\">\n", heading,
                                 html_escaped(headline_of(ranked, flights)));
     if (!ranked.cards.empty()) {
         section.html += "<div>\n";

@@ -6,12 +6,14 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 
 namespace flightwatt::report {
 
 /// Returns the first screen: headline, a card for each mission (one is shown), their table, and the aircraft. `flights`
-/// may be empty.
-Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights);
+/// may be empty. `heading` is the element of the headline.
+Section summary_section(const PageSummary& answers, std::span<const ReportFlight> flights,
+                        std::string_view heading = "h1");
 
 /// Returns the section of warnings of the fits and missing contents; std::nullopt without any.
 std::optional<Section> notes_section(const PageSummary& answers);

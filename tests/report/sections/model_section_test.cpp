@@ -58,7 +58,7 @@ TEST(PhysicalSection, ShowsConstantsTrialsAndFigure) {
     ASSERT_EQ(section->figures.size(), 1u);
     EXPECT_THAT(section->figures.front().description, HasSubstr("160 bins of 4 flights"));
     EXPECT_THAT(section->figures.front().description, HasSubstr("best range: "));
-    EXPECT_EQ(section->figures.front().spec["layer"].size(), 8u);
+    EXPECT_EQ(section->figures.front().spec["layer"].size(), 10u);
 }
 
 TEST(PhysicalSection, KeepsItsTables) {
