@@ -50,6 +50,10 @@ double source_voltage_v(const Battery& battery, const BatteryState& state) {
     return open_circuit_voltage_v(battery, state.soc_percent) - state.rc_voltage_v;
 }
 
+double warmed_resistance_ohm(const Battery& battery, double warming_per_j, double heat_a2s) {
+    return battery.resistance_ohm / (1.0 + warming_per_j * battery.resistance_ohm * heat_a2s);
+}
+
 double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a) {
     return source_voltage_v(battery, state) - battery.resistance_ohm * current_a;
 }

@@ -185,4 +185,11 @@ std::vector<double> rc_branch_current_a(const DischargeRecord& record, double ti
     return settled_a;
 }
 
+std::vector<double> heat_a2s(const DischargeRecord& record) {
+    std::vector<double> heat(record.time_s.size(), 0.0);
+    for (std::size_t i = 1; i < heat.size(); ++i)
+        heat[i] = heat[i - 1] + std::pow(record.mean_current_a[i], 2) * (record.time_s[i] - record.time_s[i - 1]);
+    return heat;
+}
+
 }  // namespace flightwatt::battery

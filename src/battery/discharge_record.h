@@ -50,4 +50,7 @@ std::ptrdiff_t rest_sample_count(const DischargeRecord& record);
 /// from the resting current on, exact for a current that is constant between samples.
 std::vector<double> rc_branch_current_a(const DischargeRecord& record, double time_constant_s);
 
+/// Returns the heat of the current in one ohm [J] up to each sample.
+std::vector<double> heat_a2s(const DischargeRecord& record);
+
 }  // namespace flightwatt::battery

@@ -277,20 +277,34 @@ double root_mean_square(const Eigen::VectorXd& values) {
 }
 
 double beyond_percent(const BatteryIdentification& identified, const DischargeRecord& record,
-                      const PredictedVoltage& predicted) {
+                      const std::vector<double>& soc_percent) {
     double beyond = 0.0;
     for (std::size_t i = 0; i < record.time_s.size(); ++i)
-        if (record.used[i] && predicted.soc_percent[i] < identified.observed_min_soc_percent) beyond += 1.0;
+        if (record.used[i] && soc_percent[i] < identified.observed_min_soc_percent) beyond += 1.0;
     return units::percentage(beyond, static_cast<double>(used_sample_count(record)));
 }
 
-/// Standard deviation [Ah] of a charge that is inferred from the resting voltage: packs relax differently, by what the
-/// prior of the rest offset permits (circuit_problem.h).
+/// How much packs that begin lower differ in what they have relaxed, relative to the prior of the rest offset
+/// (circuit_problem.h), which counts as one flight.
+double relative_rest_scatter(const JointCircuitFit& aligned) {
+    double squares = 1.0;
+    double count = 1.0;
+    const double charged_sd_v = aligned.fit.weights.cells * charged_rest_sd_v;
+    for (const auto& [record, initial_ah, rest_v, own_ohm, log_capacity] : aligned.records) {
+        const double sd_v = lower_rest_fraction * (aligned.fit.weights.fullest_rest_v - record->resting_voltage_v);
+        if (sd_v <= charged_sd_v) continue;
+        squares += std::pow((rest_v - aligned.fit.common_rest_offset_v) / std::hypot(charged_sd_v, sd_v), 2);
+        ++count;
+    }
+    return std::sqrt(squares / count);
+}
+
+/// Standard deviation [Ah] of a charge that is inferred from the resting voltage: packs relax differently.
 double resting_charge_sd_ah(const DischargeRecord& record, const JointCircuitFit& aligned, double initial_charge_ah) {
     const auto& fit = aligned.fit;
     const double below_v = fit.weights.fullest_rest_v - record.resting_voltage_v;
-    const double rest_sd_v =
-        std::hypot(fit.weights.cells * charged_rest_sd_v, lower_rest_fraction * below_v, record.resolution_v);
+    const double lower_sd_v = relative_rest_scatter(aligned) * lower_rest_fraction * below_v;
+    const double rest_sd_v = std::hypot(fit.weights.cells * charged_rest_sd_v, lower_sd_v, record.resolution_v);
     // The slope of the curve from there on, over a tenth of the charge that it covers.
     const double over_ah = 0.1 * fit.knots_ah.back();
     const double from_ah = std::clamp(initial_charge_ah, 0.0, fit.knots_ah.back() - over_ah);
@@ -299,40 +313,50 @@ double resting_charge_sd_ah(const DischargeRecord& record, const JointCircuitFit
     return std::min(rest_sd_v / std::max(fall_v, unreadable_v) * over_ah, fit.knots_ah.back());
 }
 
-/// Checks a record by the battery of other flights, whose mean power under load is `others_w`.
+/// Checks a record by the battery of other flights, whose power takes the course `others_w`.
 LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeRecord& record,
-                         const std::optional<double>& others_w) {
+                         const std::vector<double>& others_w) {
     const auto& identified = common.identification;
     const auto& aligned = common.fitted.aligned;
     LeaveOneOutCheck check;
     check.flight = record.flight;
     const double resting_ah = resting_charge_ah(record, aligned);
     check.initial_charge_ah = identified.curve_start_depletion_ah + resting_ah;
-    const auto predicted = predict_voltage(identified.battery, record, check.initial_charge_ah);
-    const ModelledRecord modelled{&identified.battery, &record, predicted.soc_percent, predicted.voltage_v,
-                                  resting_charge_sd_ah(record, aligned, resting_ah)};
+    const double charge_sd_ah = resting_charge_sd_ah(record, aligned, resting_ah);
+    const double warming_per_j = identified.fit.warming_per_j;
+    auto battery = identified.battery;
+    const auto modelled_now = [&] {
+        const auto [soc, voltage_v] = predict_voltage(battery, record, check.initial_charge_ah, warming_per_j);
+        return ModelledRecord{&battery, &record, soc, voltage_v, charge_sd_ah, warming_per_j};
+    };
+    const auto own = starting_resistance(modelled_now());
+    battery.resistance_ohm *= own.value;
+    battery.thevenin->rc_resistance_ohm *= own.value;
+    const auto modelled = modelled_now();
+    const auto after = [&](double since_s) {
+        const auto at = std::ranges::lower_bound(record.time_s, record.time_s[record.rest_samples] + since_s);
+        return static_cast<std::size_t>(at - record.time_s.begin());
+    };
     check.voltage_rms_v =
-        root_mean_square(errors_v(predicted.voltage_v, record, 0, identified.fit.common_rest_offset_v));
-    const auto under_load = errors_v(predicted.voltage_v, record, record.rest_samples);
+        root_mean_square(errors_v(modelled.voltage_v, record, 0, identified.fit.common_rest_offset_v));
+    const auto under_load = errors_v(modelled.voltage_v, record, after(start_s));
     check.load_rms_v = root_mean_square(under_load);
     check.load_mean_error_v = under_load.cwiseAbs().mean();
     double held = 0.0;
-    const auto half_v = voltage_half_widths_v(modelled);
-    for (auto i = record.rest_samples; i < half_v.size(); ++i) {
+    const auto half_v = voltage_half_widths_v(modelled, own);
+    for (auto i = after(start_s); i < half_v.size(); ++i) {
         if (!record.used[i]) continue;
         check.load_half_width_v += half_v[i] / static_cast<double>(under_load.size());
-        if (std::abs(record.voltage_v[i] - predicted.voltage_v[i]) <= half_v[i]) ++held;
+        if (std::abs(record.voltage_v[i] - modelled.voltage_v[i]) <= half_v[i]) ++held;
     }
     check.load_held_percent = units::percentage(held, static_cast<double>(under_load.size()));
-    const auto first = std::ranges::lower_bound(record.time_s, record.time_s[record.rest_samples] + looked_ahead_s);
-    const auto ahead = errors_v(predict_voltage_ahead(modelled, looked_ahead_s), record,
-                                static_cast<std::size_t>(first - record.time_s.begin()));
+    const auto ahead = errors_v(predict_voltage_ahead(modelled, looked_ahead_s), record, after(looked_ahead_s));
     check.ahead_error_v = ahead.size() > 0 ? ahead.cwiseAbs().mean() : 0.0;
-    if (const auto errors = others_w ? forecast_errors(modelled, *others_w) : std::nullopt) {
+    if (const auto errors = others_w.empty() ? std::nullopt : forecast_errors(modelled, others_w)) {
         check.forecast_error_v = errors->before_v;
         check.updated_forecast_error_v = errors->updated_v;
     }
-    check.extrapolated_percent = beyond_percent(identified, record, predicted);
+    check.extrapolated_percent = beyond_percent(identified, record, modelled.soc_percent);
     return check;
 }
 
@@ -354,18 +378,22 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     return std::move(result);
 }
 
-PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah) {
-    const auto& circuit = battery.thevenin.value();
+PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah,
+                                 double warming_per_j) {
+    auto warmed = battery;
+    const auto& circuit = warmed.thevenin.value();
     const auto settled_a = rc_branch_current_a(record, circuit.rc_time_constant_s);
     PredictedVoltage predicted;
+    const auto heat = heat_a2s(record);
     predicted.soc_percent.reserve(record.time_s.size());
     predicted.voltage_v.reserve(record.time_s.size());
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
         const double drawn_ah = initial_charge_ah + record.charge_ah[i];
         const BatteryState state{units::percent_per_whole - units::percentage(drawn_ah, battery.capacity_ah),
                                  circuit.rc_resistance_ohm * settled_a[i]};
+        warmed.resistance_ohm = warmed_resistance_ohm(battery, warming_per_j, heat[i]);
         predicted.soc_percent.push_back(state.soc_percent);
-        predicted.voltage_v.push_back(terminal_voltage_v(battery, state, record.current_a[i]));
+        predicted.voltage_v.push_back(terminal_voltage_v(warmed, state, record.current_a[i]));
     }
     return predicted;
 }
@@ -387,7 +415,7 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
         battery.intervals.resistance_scatter = resistance_scatter(common.fitted.resistances, battery.resistance_ohm);
         std::vector<const DischargeRecord*> others;
         for (const auto& aligned : common.fitted.aligned.records) others.push_back(aligned.record);
-        const auto others_w = mean_load_power_w(others);
+        const auto others_w = load_power_course_w(others);
         for (const auto k : folds[fold]) checks[k] = checked(common, records[k], others_w);
         if (!progress) return;
         const std::lock_guard lock(mutex);

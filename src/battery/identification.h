@@ -30,8 +30,10 @@ struct PredictedVoltage {
     std::vector<double> voltage_v;  ///< terminal
 };
 
-/// Predicts a record with a Thévenin battery, from its current and the charge that was missing when it began.
-PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah);
+/// Predicts a record with a Thévenin battery, from its current and the charge that was missing when it began. Its
+/// resistance falls as the pack warms (CircuitFit::warming_per_j).
+PredictedVoltage predict_voltage(const Battery& battery, const DischargeRecord& record, double initial_charge_ah,
+                                 double warming_per_j = 0.0);
 
 /// Of more records than this, groups are left out together (make_folds).
 inline constexpr std::size_t max_battery_folds = 20;

@@ -56,6 +56,7 @@ struct CircuitFit {
     double rc_resistance_ohm = 0.0;   ///< 0: no RC pair found
     double rc_time_constant_s = 0.0;  ///< 0 without an RC pair
     double common_rest_offset_v = 0.0;
+    double warming_per_j = 0.0;  ///< 0: none; the fall of ln R a joule of heat in it (docs/methods.md)
     FitWeights weights;
     double rms_v = 0.0;
 };
@@ -111,14 +112,14 @@ struct IdentifiedFlight {
 /// Prediction of a flight's voltage by the others. Under load is from the first load on.
 struct LeaveOneOutCheck {
     std::string flight;
-    double voltage_rms_v = 0.0;      ///< of all samples, predicted before take-off
-    double load_rms_v = 0.0;         ///< of those under load
+    double voltage_rms_v = 0.0;      ///< of all samples, by their charge at rest and the first 3 s of load
+    double load_rms_v = 0.0;         ///< of those under load, as known 3 s after the first load
     double load_mean_error_v = 0.0;  ///< mean |error| of those under load
     double load_half_width_v = 0.0;  ///< of the 95 % interval under load, mean
     double load_held_percent = 0.0;  ///< of those under load: within that interval
     double ahead_error_v = 0.0;      ///< mean |error|, predicted in flight 30 s before each sample
-    /// Mean |error| of all that remains of the flight, by the others' mean power: known before take-off, or every 30 s in
-    /// flight, with its power so far. None for a flight below a minute.
+    /// Mean |error| of all that remains of the flight, by the others' power: known 3 s after the first load, or every 30 s
+    /// in flight, with its power so far. None for a flight below a minute.
     std::optional<double> forecast_error_v = {};
     std::optional<double> updated_forecast_error_v = {};
     double initial_charge_ah = 0.0;     ///< missing from the full pack, by the others and its rest before take-off

@@ -265,6 +265,32 @@ TEST(Identification, GivesBackWhatSynthesizedLogsWereMadeOf) {
     }
 }
 
+/// A cold pack has three times the resistance, and both lose some of it as the current heats them.
+TEST(Identification, AlignsColdAndWarmPacks) {
+    constexpr double warming_per_j = 2e-4;
+    std::vector<DischargeRecord> records;
+    for (const std::size_t f : {0U, 1U, 2U, 3U}) {
+        SyntheticDischarge flown;
+        flown.initial_charge_ah = 0.3 * static_cast<double>(f);
+        auto record = test::discharge_record(synthetic_discharge(known_pack(), flown, f + 1));
+        auto own = known_pack();
+        own.resistance_ohm *= f % 2 == 1 ? 3.0 : 1.0;
+        const auto heat = heat_a2s(record);
+        for (std::size_t i = 0; i < heat.size(); ++i)
+            record.voltage_v[i] -= (warmed_resistance_ohm(own, warming_per_j, heat[i]) - known_pack().resistance_ohm) *
+                                   record.current_a[i];
+        records.push_back(std::move(record));
+    }
+    const auto found = identify_battery(records, {2.4, {}, ""});
+    EXPECT_LT(found.fit.rms_v, 0.02);
+    EXPECT_NEAR(found.fit.warming_per_j, warming_per_j, 0.4 * warming_per_j);
+    for (const std::size_t f : {1U, 2U, 3U})
+        EXPECT_NEAR(found.flights[f].initial_depletion_ah - found.flights[0].initial_depletion_ah,
+                    0.3 * static_cast<double>(f), 0.08);
+    for (const auto& check : leave_one_out(records, {2.4, {}, ""}))
+        EXPECT_LT(check.load_mean_error_v, 0.2) << check.flight << ": three times the resistance is 0.5 V";
+}
+
 TEST(Identification, FollowsThePackInFlight) {
     std::vector<DischargeRecord> records;
     for (const std::size_t seed : {1U, 2U, 3U})

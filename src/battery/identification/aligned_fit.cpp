@@ -35,6 +35,9 @@ bool is_straight(const CircuitFit& fit) {
     return max_v < straight_cell_v * fit.weights.cells;
 }
 
+/// All free but capacities; of several flights each has a resistance of its own, as packs are cold or warm.
+FreeParameters each_own(const JointCircuitFit& joint) { return {true, true, joint.records.size() > 1, false}; }
+
 bool falls_throughout(const CircuitFit& fit) {
     return std::ranges::adjacent_find(fit.open_circuit_v, std::less<>()) == fit.open_circuit_v.end();
 }
@@ -184,7 +187,7 @@ JointCircuitFit fit_falling_curve(const JointCircuitFit& rough, int segments, bo
         auto joint = rough;
         place_knots(joint, segments);
         if (with_search) search_time_constant(joint);
-        least_squares(joint, {});
+        least_squares(joint, each_own(joint));
         if (!(joint.fit.resistance_ohm > 0.0)) {  // noise hides it from a fast RC pair: one resistance for both
             joint = rough;
             joint.fit.rc_resistance_ohm = joint.fit.rc_time_constant_s = 0.0;
@@ -215,7 +218,7 @@ JointCircuitFit fit_circuit_jointly(std::span<const DischargeRecord> records, in
     place_knots(rough, max_segments);
     search_time_constant(rough);
     rough.fit.weights.sample_error_v = effective_error_v(rough);
-    least_squares(rough, {});
+    least_squares(rough, each_own(rough));
     rough.fit.weights.sample_error_v = effective_error_v(rough);
     return fit_falling_curve(rough, is_straight(rough.fit) ? 1 : max_segments, true);
 }

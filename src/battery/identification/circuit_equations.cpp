@@ -18,11 +18,12 @@ constexpr double more_blocks_of_one = 18.0;
 // Weak priors: relative to the common resistance, and of a capacity's logarithm.
 constexpr double own_resistance_sd_fraction = 1.0;
 constexpr double log_capacity_sd = 0.3;
+constexpr double min_span_wh = 0.01;
 constexpr double mean_log_capacity_sd = 0.0003;  // of the sum: the curve is the mean flight's
 
 /// By the knots before and behind a sample, series resistance, RC resistance, the time constant's logarithm, rest,
-/// initial charge and the capacity's logarithm.
-using Derivatives = Eigen::Matrix<double, 8, 1>;
+/// initial charge, the capacity's logarithm and the warming.
+using Derivatives = Eigen::Matrix<double, 9, 1>;
 
 /// Calls `visit` with the index, the knot before it, the derivatives and the residual of each used sample.
 template <typename Visit>
@@ -36,6 +37,7 @@ void visit_rows(const JointCircuitFit& joint, std::size_t record_index, const Vi
     const auto last_segment = static_cast<double>(fit.knots_ah.size() - 2);
     double rc_a = record.resting_current_a;  // in the RC pair's resistor, see rc_branch_current_a
     double rc_change_a = 0.0;                // its derivative by the time constant's logarithm
+    const auto heat = heat_a2s(record);
     Derivatives derivatives;
     for (std::size_t i = 0; i < record.used.size(); ++i) {
         if (rc_ohm > 0.0 && i > 0) {
@@ -55,10 +57,14 @@ void visit_rows(const JointCircuitFit& joint, std::size_t record_index, const Vi
         const double rise_v = fit.open_circuit_v[knot + 1] - from_v;
         const double slope = rise_v / step_ah;
         const double rests = i < record.rest_samples ? 1.0 : 0.0;
-        derivatives << 1.0 - fraction, fraction, -record.current_a[i], -rc_a, -rc_ohm * rc_change_a, rests, slope,
-            -slope * drawn_ah;
-        const double fitted_v = from_v + fraction * rise_v - aligned.resistance_ohm * record.current_a[i] -
-                                rc_ohm * rc_a + rests * aligned.rest_offset_v;
+        const double after_half_a2s = heat[i] - 0.5 * heat.back();
+        const double warmed = fit.warming_per_j * aligned.resistance_ohm * after_half_a2s;
+        const double per_ohm_v = -record.current_a[i] * std::exp(-warmed);
+        const double over_resistance_v = aligned.resistance_ohm * per_ohm_v;
+        derivatives << 1.0 - fraction, fraction, per_ohm_v * (1.0 - warmed), -rc_a, -rc_ohm * rc_change_a, rests, slope,
+            -slope * drawn_ah, -over_resistance_v * aligned.resistance_ohm * after_half_a2s;
+        const double fitted_v =
+            from_v + fraction * rise_v + over_resistance_v - rc_ohm * rc_a + rests * aligned.rest_offset_v;
         visit(i, static_cast<Eigen::Index>(knot), derivatives, record.voltage_v[i] - fitted_v);
     }
 }
@@ -94,6 +100,11 @@ void add_circuit_prior(const JointCircuitFit& joint, const FreeParameters& free,
             add_prior(circuit, {{k - 2, 1.0}, {k - 1, -2.0}, {k, 1.0}}, -(curve_v[-2] - 2.0 * curve_v[-1] + curve_v[0]),
                       slope_change_sd_v * cells_per_error);
     }
+    const double span_wh = fit.weights.fullest_rest_v * (fit.knots_ah.back() - fit.knots_ah.front());
+    if (free.time_constant)
+        problem.objective +=
+            add_prior(circuit, {{knots + warming_column, 1.0}}, -fit.warming_per_j,
+                      warming_sd_wh_per_j / std::max(min_span_wh, span_wh) / fit.weights.sample_error_v);
     if (!free.own_capacities) return;
     double sum = 0.0;
     for (const auto& aligned : joint.records) sum += aligned.log_capacity;
@@ -129,7 +140,7 @@ double add_record_prior(const JointCircuitFit& joint, std::size_t record, const 
 /// Sums over consecutive samples between the same knots.
 struct RowSums {
     Eigen::Index knot = 0;
-    Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Zero();
+    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
     Derivatives score = Derivatives::Zero();
 };
 
@@ -140,13 +151,14 @@ std::vector<Equations> block_equations(const JointCircuitFit& joint, std::size_t
     const auto knots = std::ssize(joint.fit.knots_ah);
     const auto own = knots + common_columns;
     const bool has_rc = joint.fit.rc_resistance_ohm > 0.0;
-    Eigen::Array<bool, 8, 1> is_free;
+    Eigen::Array<bool, 9, 1> is_free;
     is_free << true, true, true, has_rc, has_rc && free.time_constant, true,
-        free.initial_charges && record_index != joint.reference, free.own_capacities;
+        free.initial_charges && record_index != joint.reference, free.own_capacities, free.time_constant;
     const Derivatives mask = is_free.cast<double>();
-    Eigen::Array<Eigen::Index, 8, 1> columns;
+    Eigen::Array<Eigen::Index, 9, 1> columns;
     columns << 0, 0, free.own_resistances ? own + own_resistance_column : knots + resistance_column, knots + rc_column,
-        knots + time_constant_column, own + rest_column, own + charge_column, own + capacity_column;
+        knots + time_constant_column, own + rest_column, own + charge_column, own + capacity_column,
+        knots + warming_column;
     std::vector<Equations> blocks{zero_equations(own + own_columns)};
     RowSums sums;
     const auto add_sums = [&] {

@@ -97,6 +97,7 @@ JointCircuitFit moved(JointCircuitFit joint, const ParameterStep& step, const Fr
     const double moved_s = fit.rc_time_constant_s * std::exp(step.common[knots + time_constant_column]);
     const auto& [min_s, max_s] = joint.time_constants_s;
     fit.rc_time_constant_s = fit.rc_resistance_ohm > 0.0 ? std::clamp(moved_s, min_s, max_s) : 0.0;
+    fit.warming_per_j = std::max(0.0, fit.warming_per_j + step.common[knots + warming_column]);
     for (std::size_t r = 0; r < joint.records.size(); ++r) {
         auto& aligned = joint.records[r];
         const auto own = step.own.col(static_cast<Eigen::Index>(r));

@@ -16,7 +16,7 @@ struct AlignedRecord {
     const DischargeRecord* record = nullptr;
     double initial_charge_ah = 0.0;  ///< missing when it began, counted from where the curve begins
     double rest_offset_v = 0.0;      ///< height above the curve before its first load
-    double resistance_ohm = 0.0;     ///< in series; common to all records but for the state of health
+    double resistance_ohm = 0.0;     ///< in series, when half of the record's heat has warmed the pack
     double log_capacity = 0.0;       ///< against the mean record; 0 but for the state of health
 };
 
@@ -30,14 +30,17 @@ struct JointCircuitFit {
 
 /// Prior of a pack, as standard deviations. A resting voltage differs from the curve under load, because a pack relaxes
 /// for an hour: by a common 50 mV a cell, and in each flight by 10 mV a cell after charging and 0.3 of the difference
-/// to the fullest. The curve's slope changes by some 0.15 V a segment and cell.
+/// to the fullest. The curve's slope changes by some 0.15 V a segment and cell. A cold pack that warms loses 3 % of its
+/// resistance a kelvin, and takes 6 J a kelvin and Wh that it stores.
 inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_fraction = 0.3;
 inline constexpr double slope_change_sd_v = 0.15;
+inline constexpr double warming_sd_wh_per_j = 0.03 / 6.0;
 
 /// Free parameters in addition to those in which the voltage is linear: the knots, the rest offsets, the RC resistance
-/// and one series resistance. The initial charge of the reference is always fixed.
+/// and one series resistance. The initial charge of the reference is always fixed. With the time constant the warming
+/// is free.
 struct FreeParameters {
     bool initial_charges = true;
     bool time_constant = true;
@@ -53,6 +56,7 @@ enum CommonColumn : Eigen::Index {
     resistance_column,
     rc_column,
     time_constant_column,  ///< its logarithm
+    warming_column,
     capacity_sum_column,
     common_columns
 };
