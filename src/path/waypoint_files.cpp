@@ -209,7 +209,7 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
     if (coordinates.empty())
         coordinates = points;
     else if (!points.empty())
-        plan.not_flown.emplace_back("the points beside its paths are not flown to");
+        plan.not_flown.emplace_back("its points are not flown to: it has a path");
     const auto found = kml_places(coordinates, file);
     if (found.places.empty()) throw InputError({file}, "has no waypoints", hint);
     if (found.has_altitudes) plan.not_flown.emplace_back("the altitudes of KML are not flown: the path is level");

@@ -20,7 +20,7 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
 /// Reads waypoints from GeoJSON: Points and LineStrings. Throws InputError, placed in the file.
 std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file);
 
-/// Reads waypoints from KML, level: its LineStrings, or its Points where there are none. Throws InputError.
+/// Reads waypoints from KML, level: its LineStrings, without them its Points. Throws InputError.
 PlanEntries parse_kml(std::string_view text, const std::string& file);
 
 /// The outer boundary of an area.

@@ -110,7 +110,7 @@ TEST(WaypointFiles, AreKmlWithItsPathLevel) {
     EXPECT_EQ(plan.entries[1].geographic->latitude_deg, 47.1);
     EXPECT_EQ(plan.entries[1].geographic->longitude_deg, 8.1);
     EXPECT_FALSE(plan.entries[1].altitude_m);
-    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"the points beside its paths are not flown to"});
+    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"its points are not flown to: it has a path"});
     EXPECT_EQ(kml(point + point).entries.size(), 2U);
     EXPECT_EQ(kml(line("8,47,30 8.1,47.1,30")).not_flown,
               std::vector<std::string>{"the altitudes of KML are not flown: the path is level"});
