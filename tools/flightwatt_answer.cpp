@@ -14,11 +14,14 @@
 #include "cli/output/battery_output.h"
 #include "cli/output/flight_options.h"
 #include "cli/output/pack_input.h"
+#include "cli/output/requirement.h"
 #include "cli/screen_table.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "exchange/failsafe_parameters.h"
 #include "mission/mission_file.h"
+#include "mission/prepared_mission.h"
+#include "mission/sampled_flights.h"
 #include "report/answer_section.h"
 #include "report/page.h"
 #include "report/report.h"
@@ -44,6 +47,8 @@ struct AnswerArguments {
     cli::PackArguments packs;
     std::optional<std::string> wind;
     std::optional<double> home_distance_m;
+    cli::Requirement requirement;
+    cli::SamplingArguments sampling;  ///< of the requirement
     std::optional<std::string> table;
     bool no_page = false;
 };
@@ -62,7 +67,7 @@ answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArgumen
     try {
         uses = cli::read_pack_uses(call, arguments.batch.flights, arguments.packs);
     } catch (const InputError& error) {
-        no_uses_reason = error.what();
+        no_uses_reason = error.hint().empty() ? error.what() : fmt::format("{}; {}", error.what(), error.hint());
     }
     auto pack = find_pack(records_of(call, uses), no_uses_reason, choose_capacity(arguments.capacity_ah, facts), facts);
     if (pack.identified) {
@@ -83,8 +88,10 @@ answer::Answered prediction_error(const mechanical::MechanicalModel& model) {
             if (score.model == model.validation->default_model)
                 return answer::known(score.mean_absolute_error_percent,
                                      fmt::format("{} flights, each left out", score.flights));
-    return answer::unknown(model.flights.size() == 1 ? "a second flight would show how well the first predicts it"
-                                                     : "the flights do not predict each other");
+    return answer::unknown(
+        model.flights.size() == 1
+            ? "a second flight would show how well the first predicts it"
+            : "the flights do not predict each other; more flights with all three phases would show it");
 }
 
 /// The values of a failsafe for the mission of the question, or the reason why they are absent.
@@ -100,8 +107,7 @@ void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft&
     for (const auto& flight : aircraft.flights)
         request.flown_distance_m = std::max(request.flown_distance_m, flight.farthest_m);
     request.wind.speed_m_per_s = arguments.question.wind_m_per_s;
-    request.airspeed_m_per_s = arguments.question.airspeed_m_per_s;
-    if (!request.airspeed_m_per_s) request.airspeed_m_per_s = answer.endurance.airspeed_m_per_s.value;
+    request.airspeed_m_per_s = answer.endurance.return_airspeed_m_per_s.value;
     try {
         answer.failsafe = make_failsafe_card(request);
     } catch (const NoResultError& error) {
@@ -130,6 +136,18 @@ std::vector<std::pair<std::string, std::string>> failsafe_texts(const std::optio
     add("INAV", exchange::to_failsafe_inav);
     add("Paparazzi", exchange::to_failsafe_paparazzi);
     return texts;
+}
+
+/// Why the flight of the question, as long as those of the logs, misses what is required; empty where it does not.
+std::string missed_requirement(const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
+                               const std::filesystem::path& file) {
+    if (!arguments.requirement.text) return "";
+    if (!aircraft.pack.capacity_ah.value) return aircraft.pack.capacity_ah.unknown;
+    const auto prepared = prepare_mission(mission::parse_mission(mission_toml(aircraft, arguments.question), file));
+    auto summary = simulate_prepared(prepared, {}, {}).simulation.summary;
+    if (arguments.requirement.probability && !summary.undeliverable)
+        summary.samples = sample_flights(prepared, {}, *sampling_options(arguments.sampling, false));
+    return reason_missed(arguments.requirement, summary).value_or("");
 }
 
 /// Writes the page of an answer, with the report of its folder and mission; returns its name.
@@ -193,10 +211,12 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, answer.endurance.cruise_s));
     if (!answer.endurance.power_w.value) {
         answer.failsafe_missing = answer.endurance.power_w.unknown;
+        if (arguments.requirement.text) answer.requirement_missed = answer.failsafe_missing;
         return;
     }
     const auto mission = mission::read_mission(mission_file);
     add_failsafe(arguments, aircraft, setup_of(mission), answer);
+    answer.requirement_missed = missed_requirement(arguments, aircraft, mission_file);
     if (!arguments.no_page) answer.page = write_page(call, answer, mission);
 }
 
@@ -217,6 +237,7 @@ cli::AircraftAnswer answer_aircraft(const cli::StageCall& call, const AnswerArgu
     } catch (const InputError& error) {
         answer.no_answer = error.hint().empty() ? error.what() : fmt::format("{}; {}", error.what(), error.hint());
     }
+    if (arguments.requirement.text && !answer.no_answer.empty()) answer.requirement_missed = answer.no_answer;
     return answer;
 }
 
@@ -303,7 +324,11 @@ int answer_logs(const cli::StageCall& call, const AnswerArguments& arguments) {
     const bool is_answered =
         std::ranges::any_of(output.aircraft, [](const auto& one) { return one.no_answer.empty(); });
     if (!is_answered && totals.accepted > 0) return cli::no_answer;
-    return totals.rejected_of_this_run > 0 ? cli::input_rejected : cli::ok;
+    auto code = totals.rejected_of_this_run > 0 ? cli::input_rejected : cli::ok;
+    for (const auto& one : output.aircraft)
+        if (!one.requirement_missed.empty())
+            code = cli::report_missed(call, fmt::format("{}: {}", one.aircraft, one.requirement_missed));
+    return code;
 }
 
 }  // namespace
@@ -317,7 +342,8 @@ on; where something is unknown, it states which flight would show it. `flightwat
 
 Logs are ArduPilot's (.bin, .log), PX4's (.ulg), Paparazzi's (.data with its .log) and CSV. Results are in the folder
 of --output (flightwatt-out), and logs that have not changed are not read again. Of several aircraft it answers for the
-one with the most flights; --each answers for each of them.)"};
+one with the most flights; --each answers for each of them. --require tests a flight as long as those of the logs, with
+the payload, wind and airspeed that are asked for.)"};
     stage.examples = {"flightwatt flight.bin --capacity 5.2", "flightwatt logs --payload 0.5 --wind 6",
                       "flightwatt logs --each --table fleet.csv"};
     stage.json_schema = cli::document_schema<AnswerOutput>;
@@ -343,11 +369,12 @@ one with the most flights; --each answers for each of them.)"};
                 "airspeed of the cruise; default: as flown");
     options.add(
         "wind", arguments.wind, {.value = "SPEED@DEG"},
-        "steady wind in m/s, and the degrees that it comes from, which do not matter here: distances are out and "
-        "back along it, the way home is against it, and a rotorcraft holds its place in it");
+        "steady wind in m/s, and the degrees that it comes from: distances are out and back along it and across it, "
+        "the way home is against it, and a rotorcraft holds its place in it");
     options.add("home-distance", arguments.home_distance_m,
                 {.value = "M", .min = 0.0, .max = 1e6, .above_min = true, .unit = "m"},
                 "the farthest place from which the failsafe is to return; default: the farthest of the flights");
+    add_require_option(options, arguments.requirement, arguments.sampling);
     options.add("table", arguments.table, cli::output_file("FILE.csv"), "write one row an aircraft to FILE");
     options.add("no-page", arguments.no_page, "write no page");
     cli::add_each_option(options, arguments.batch.flights, "answers for each aircraft, in a folder of its own");
@@ -355,7 +382,11 @@ one with the most flights; --each answers for each of them.)"};
     cli::add_filter_options(options, arguments.batch.filter);
     cli::add_flight_options(options, arguments.batch.flights);
     return cli::run_stage(argc, argv, stage, [&](const auto& call) {
-        if (arguments.wind) question.wind_m_per_s = cli::parse_wind(*arguments.wind, false).speed_m_per_s;
+        if (arguments.wind) {
+            const auto wind = cli::parse_wind(*arguments.wind, false);
+            question.wind_m_per_s = wind.speed_m_per_s;
+            if (arguments.wind->find('@') != std::string::npos) question.wind_from_deg = wind.from_deg;
+        }
         return answer_logs(call, arguments);
     });
 }

@@ -70,7 +70,7 @@ int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
 
 int flightwatt::stages::battery_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "battery", "FLIGHT.data|SERIES.csv|FOLDER...",
+        "battery", "LOG|SERIES.csv|FOLDER...",
         R"(Identifies the battery from the flights' own voltage, current and charge: open-circuit voltage over
 state of charge, series resistance and one RC pair, with 95 % intervals, for missions (model =
 "thevenin"). The battery goes to the standard output as TOML; with -o it goes to the file, and its

@@ -81,9 +81,17 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
-    if (arguments.plan)
+    if (arguments.plan) {
+        if (!fresh.model.physical)
+            throw InputError({mechanical}, "has no [physical] part, which predicts the power along a plan",
+                             "make a model of flights that measured their airspeed, or give the time that the plan "
+                             "takes: --cruise TIME in place of --plan");
+        const double airspeed_m_per_s = mission::new_airspeed_m_per_s(fresh.model);
         fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
-                                            mission::new_airspeed_m_per_s(fresh.model));
+                                            airspeed_m_per_s);
+        fresh.flown->chosen.push_back(
+            fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", airspeed_m_per_s));
+    }
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
@@ -99,6 +107,17 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     return fresh;
 }
 
+/// The mission as `simulate` reads it. What is wrong with a plan is placed there, and not in the mission to be written.
+mission::MissionVariant read_again(const std::string& text, const std::filesystem::path& file,
+                                   const NewMissionArguments& arguments) {
+    try {
+        return mission::parse_mission(text, file, {.allow_unplanned = arguments.mission.is_planned});
+    } catch (const InputError& error) {
+        if (!arguments.plan || error.where().file != file) throw;
+        throw InputError({*arguments.plan}, error.what(), error.hint());
+    }
+}
+
 int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arguments) {
     const std::filesystem::path file = call.output.value_or("mission.toml");
     std::error_code none;
@@ -109,7 +128,7 @@ int write_new_mission(const cli::StageCall& call, const NewMissionArguments& arg
                         file.string()));
     const auto fresh = described_mission(arguments, file);
     const auto text = new_mission_toml(fresh);
-    const auto read = mission::parse_mission(text, file, {.allow_unplanned = fresh.is_planned});
+    const auto read = read_again(text, file, arguments);
     cli::write_result(call, text);
     cli::warn_of_setup(call, setup_of(read));
     if (fresh.flown)

@@ -150,8 +150,8 @@ void require_flyable(const mechanical::MechanicalModel& model, const std::string
         for (const double part_w : fourier.cos_w) max_w += std::abs(part_w);
         for (const double part_w : fourier.sin_w) max_w += std::abs(part_w);
         if (duration_s > max_phase_s) {
-            throw InputError(
-                {file}, fmt::format("{} takes {} s, expected at most {} s", to_string(phase), duration_s, max_phase_s));
+            throw InputError({file}, fmt::format("{} takes {} s, expected at most {} s", phase_word(phase), duration_s,
+                                                 max_phase_s));
         }
         if (!(max_w <= max_power_w)) {
             throw InputError({file}, fmt::format("the coefficients of {} add up to {} W, expected at most {} W",

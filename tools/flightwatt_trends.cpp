@@ -41,7 +41,7 @@ std::vector<report::FlightTrendData> read_flights(const cli::StageCall& call, co
             if (!loaded.exclusion.empty()) {
                 if (!cli::is_shown_by_batch(call, file))
                     cli::add_diagnostic(call, {Severity::warning, "not used: " + kind_of_reason(loaded.exclusion),
-                                               "it is excluded: " + loaded.exclusion, loaded.data.flight});
+                                               "it is not used: " + loaded.exclusion, loaded.data.flight});
                 return std::vector<report::FlightTrendData>{};
             }
             report::ReportFlight flight;
@@ -179,7 +179,7 @@ int show_trends(const cli::StageCall& call, const TrendsArguments& arguments) {
 
 int flightwatt::stages::trends_stage(int argc, char** argv) {
     cli::StageDefinition stage{
-        "trends", "FLIGHT.data|SERIES.csv|FOLDER...",
+        "trends", "LOG|SERIES.csv|FOLDER...",
         R"(Shows the ageing of aircraft and pack: for each flight its energy per minute and per kilometre over ground and
 through the air, the mean power of its cruise, the pack's resistance, its capacity if the flight draws enough to
 determine it, and the charge drawn, as CSV; and their trends over the flights' dates, with 95 % intervals, for

@@ -8,6 +8,7 @@
 #include "mission/mission_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -54,12 +55,29 @@ Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question
     return unknown("the logs have neither airspeed nor position; a flight with GPS shows it");
 }
 
+/// The airspeed of the way home: that of the cruise; against a wind a rotorcraft keeps the speed over ground it flew.
+Answered return_airspeed(const KnownAircraft& aircraft, const Question& question, const Answered& cruise) {
+    if (question.airspeed_m_per_s || !aircraft.model.is_rotorcraft || question.wind_m_per_s == 0.0) return cruise;
+    const auto over_ground = mean_ground_speed_m_per_s(aircraft.flights);
+    if (!over_ground) return unknown("no log has its speed; a flight with GPS shows it, --airspeed states it");
+    const double speed = *over_ground + question.wind_m_per_s;
+    auto basis = fmt::format("assumed: {:.1f} m/s over ground as in the flights", *over_ground);
+    const auto& physical = aircraft.model.physical;
+    if (!physical)
+        basis += ", at their power";
+    else if (!is_within_flown_range(*physical, {speed, 0.0, 1.0}))
+        basis += "; faster than flown, its power is extrapolated";
+    return known(speed, std::move(basis));
+}
+
 /// The distance over ground of a cruise along the wind, out and back.
 Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s) {
     if (!airspeed.value) return unknown(airspeed.unknown);
     const double speed = *airspeed.value;
     if (speed <= wind_m_per_s)
-        return unknown(fmt::format("at {:.1f} m/s it makes no way against a wind of {:.1f} m/s", speed, wind_m_per_s));
+        return unknown(
+            fmt::format("at {:.1f} m/s it makes no way against a wind of {:.1f} m/s; --airspeed answers for a speed",
+                        speed, wind_m_per_s));
     return known(cruise_s * (speed * speed - wind_m_per_s * wind_m_per_s) / speed, airspeed.basis);
 }
 
@@ -139,6 +157,7 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     const auto with_cruise_s = variation_of(aircraft, question);
     const auto setup = setup_of_question(with_cruise_s, aircraft, endurance);
     endurance.airspeed_m_per_s = cruise_airspeed(aircraft, question);
+    endurance.return_airspeed_m_per_s = return_airspeed(aircraft, question, endurance.airspeed_m_per_s);
     if (!setup) return endurance;
     endurance.notes = setup->notes;
     endurance.power_w = known(mean_cruise_power_w(*setup), basis);
@@ -159,9 +178,12 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     else if (holds_place)
         endurance.distance_m = unknown("it holds its place against the wind; --airspeed answers for a speed");
     else if (endurance.is_hover)
-        endurance.distance_m = unknown("it hovered in all flights; --airspeed answers for a speed");
+        endurance.distance_m = unknown("it hovered in all flights; a flight along a way, or --airspeed, answers it");
     else
         endurance.distance_m = distance(endurance.airspeed_m_per_s, cruise_s, question.wind_m_per_s);
+    if (endurance.distance_m.value && question.wind_m_per_s > 0.0)
+        endurance.distance_across_m =
+            cruise_s * std::sqrt(std::pow(*endurance.airspeed_m_per_s.value, 2) - std::pow(question.wind_m_per_s, 2));
     if (aircraft.model.physical && !aircraft.model.is_rotorcraft)
         if (auto speeds = speed_to_fly(*aircraft.model.physical, question.wind_m_per_s))
             endurance.best_speeds = std::move(speeds->best);

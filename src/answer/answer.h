@@ -16,7 +16,8 @@
 /// An answer is made of a power model, a battery and what the cruises of the flights were like. Each quantity states
 /// what it rests on; one that cannot be known has the reason, and which flight would show it, instead of a value. Time
 /// in the air is the longest mission of take-off, cruise (of a rotorcraft its hover) and landing that begins with a full
-/// pack and lands with the reserve. Distances are along the wind, out and back, in a steady wind.
+/// pack and lands with the reserve. Distances are out and back, along a steady wind and across it; the way home is
+/// against it.
 namespace flightwatt::answer {
 
 /// Names of the files of an answer, in the folder of a batch.
@@ -30,6 +31,7 @@ struct Question {
     std::optional<double> payload_kg = {};        ///< beyond the aircraft's own mass; default: as flown
     std::optional<double> takeoff_mass_kg = {};   ///< of the flights, where a payload's effect must be assumed
     double wind_m_per_s = 0.0;
+    std::optional<double> wind_from_deg = {};  ///< absent: not stated
 };
 
 /// What is known of an aircraft from its flights.
@@ -49,7 +51,9 @@ struct Endurance {
     Answered time_95_s;              ///< the same, which 95 of 100 flights reach
     std::optional<double> cruise_s;  ///< of the flight that 95 of 100 reach, else of the mean one; absent: unknown
     Answered airspeed_m_per_s;       ///< in cruise
-    Answered distance_m;             ///< over ground in the cruise, out and back
+    Answered distance_m;             ///< over ground in the cruise, out and back along the wind
+    std::optional<double> distance_across_m;         ///< across the wind; absent in calm air
+    Answered return_airspeed_m_per_s;                ///< of the failsafe's way home
     std::vector<mechanical::BestSpeed> best_speeds;  ///< of endurance and range; empty where they are not known
     std::vector<std::string> notes;                  ///< limits of the answers, such as "extrapolated"
 };

@@ -192,14 +192,15 @@ WayHome way_home(const FailsafeRequest& request) {
     const auto& physical = request.model.physical;
     way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(physical ? physical->mean_airspeed_m_per_s : 0.0);
     if (!way.distance_m) {
-        way.missing = "the distance to home is not known: state it (in m)";
+        way.missing = "the distance to home is not known; a flight with GPS shows it, --home-distance states it";
     } else if (!(way.airspeed_m_per_s > 0.0)) {
-        way.missing = "the model has no airspeed: state that of the way home (in m/s)";
+        way.missing = "the model has no airspeed; --airspeed states that of the way home";
     } else if (const auto speed = ground_speed_m_per_s(way.airspeed_m_per_s, way.course_deg, way.wind)) {
         way.ground_speed_m_per_s = *speed;
     } else {
-        way.missing = fmt::format("{:.1f} m/s of airspeed make no way home in a wind of {:.1f} m/s",
-                                  way.airspeed_m_per_s, way.wind.speed_m_per_s);
+        way.missing = fmt::format(
+            "{:.1f} m/s of airspeed make no way home in a wind of {:.1f} m/s; --airspeed states a faster one",
+            way.airspeed_m_per_s, way.wind.speed_m_per_s);
     }
     return way;
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "battery/identification.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +41,18 @@ FoundPack constant_pack(const std::string& reason, const CapacityChoice& capacit
     return pack;
 }
 
+/// The lowest and the highest mean temperature of the flights' air; absent where no log states one.
+std::optional<Interval> air_temperature_c(const battery::BatteryIdentification& identified) {
+    std::optional<Interval> range;
+    for (const auto& flight : identified.flights) {
+        if (!flight.air_temperature_c) continue;
+        const double mean_c = *flight.air_temperature_c;
+        range =
+            range ? Interval{std::min(range->low, mean_c), std::max(range->high, mean_c)} : Interval{mean_c, mean_c};
+    }
+    return range;
+}
+
 /// Flights that leave more than this factor between the ends of its interval do not determine a capacity.
 constexpr double max_capacity_ratio = 3.0;
 
@@ -52,12 +65,15 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
     const auto& interval = pack.answer.flights_capacity_ah;
     const bool is_unknown = basis.empty() && (!interval || interval->high > max_capacity_ratio * interval->low);
     pack.answer.capacity_ah =
-        is_unknown ? unknown("the flights use too little of the pack; give the capacity on its label: --capacity AH")
+        is_unknown ? unknown(
+                         "the flights use too little of the pack; one from a full pack to below a third shows its "
+                         "capacity, or give that on its label: --capacity AH")
                    : known(identified.battery.capacity_ah, basis.empty() ? "estimated from the flights" : basis);
     const auto flights = identified.flights.size();
     pack.answer.resistance_ohm =
         known(identified.fit.resistance_ohm, fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"));
     pack.answer.resistance_interval_ohm = identified.errors.resistance_ohm;
+    pack.answer.air_temperature_c = air_temperature_c(identified);
     pack.answer.known_down_to_percent = identified.observed_min_soc_percent;
     if (auto warning = capacity_warning(identified.battery); !warning.empty())
         pack.warnings.push_back(std::move(warning));

@@ -21,6 +21,7 @@ struct PackAnswer {
     std::optional<Interval> flights_capacity_ah = {};  ///< by the flights themselves, 95 %
     Answered resistance_ohm = {};
     std::optional<Interval> resistance_interval_ohm = {};  ///< 95 %
+    std::optional<Interval> air_temperature_c = {};        ///< of the flights' means; absent where no log states one
     std::optional<double> known_down_to_percent = {};      ///< of its charge; below, the voltage is assumed
 };
 

@@ -22,6 +22,11 @@ constexpr std::string_view to_string(Phase phase) {
     return names[static_cast<std::size_t>(phase)];
 }
 
+/// Returns the name of a phase for readers: "take-off", "cruise", "landing".
+constexpr std::string_view phase_word(Phase phase) {
+    return phase == Phase::takeoff ? std::string_view("take-off") : to_string(phase);
+}
+
 /// Returns the phase of a name; std::nullopt for any other text.
 constexpr std::optional<Phase> phase_from(std::string_view name) {
     for (const auto phase : all_phases)

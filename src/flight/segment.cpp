@@ -72,9 +72,10 @@ void warn_of_gaps(const Sortie& sortie, std::vector<std::string>& warnings) {
         const bool last = i == sortie.phases.size();
         const auto& edge = last ? sortie.phases.back().end : sortie.phases[i].start;
         if (edge.gap_s <= long_gap_s) continue;
-        warnings.push_back(fmt::format(
-            "sortie {}: the {} at {:.1f} s is uncertain: {:.0f} s without an altitude", sortie.number,
-            last ? "end" : fmt::format("start of the {}", to_string(sortie.phases[i].phase)), edge.time_s, edge.gap_s));
+        warnings.push_back(
+            fmt::format("sortie {}: the {} at {:.1f} s is uncertain: {:.0f} s without an altitude", sortie.number,
+                        last ? "end" : fmt::format("start of the {}", phase_word(sortie.phases[i].phase)), edge.time_s,
+                        edge.gap_s));
     }
 }
 

@@ -61,7 +61,7 @@ bool has_any_phase(const MeasuredFlight& flight) {
 }  // namespace
 
 std::string to_string(const Exclusion& exclusion) {
-    const auto what = exclusion.phase ? to_string(*exclusion.phase) : "it";
+    const auto what = exclusion.phase ? phase_word(*exclusion.phase) : "it";
     return fmt::format("{}: {} is not used in the fit: {}", exclusion.flight, what, exclusion.reason);
 }
 

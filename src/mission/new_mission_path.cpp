@@ -27,9 +27,14 @@ double turn_radius_m(double airspeed_m_per_s) {
 
 bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
+/// Whether it is a plan of Paparazzi, and not KML, which is XML, too.
+bool has_blocks(std::string_view text) {
+    return path::plan_format(text) == path::PlanFormat::flight_plan && !has(text, "<kml");
+}
+
 bool is_area(std::string_view text) {
     return path::plan_format(text) == path::PlanFormat::flight_plan
-               ? !has(text, "<flight_plan")
+               ? !has_blocks(text) && has(text, "<outerBoundaryIs")
                : has(text, "\"Polygon\"") && !has(text, "\"fileType\"");
 }
 
@@ -75,17 +80,17 @@ NewPath path_of_plan(const std::filesystem::path& file, const std::string& name,
                      double airspeed_m_per_s) {
     const auto text = read_file(file);
     if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s);
-    const bool has_blocks = path::plan_format(text) == path::PlanFormat::flight_plan;
-    if (has_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
+    const bool of_blocks = has_blocks(text);
+    if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
         const path::AutopilotSettings settings{radius_m, airspeed_m_per_s};
-        if (has_blocks)
+        if (of_blocks)
             path::parse_plan_blocks(text, file.string(), blocks, settings);
         else
             path::read_waypoints(file, settings);
     };
-    NewPath path{{fmt::format("{} = {}", has_blocks ? "flight_plan" : "waypoints", toml_string(name))}, {}};
-    if (has_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
+    NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(name))}, {}};
+    if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
     try {
         read(std::nullopt);
     } catch (const InputError&) {  // it may leave a radius to the autopilot

@@ -170,7 +170,7 @@ std::string component_text(std::string_view text, const NewComponent& component,
 
 double new_airspeed_m_per_s(const mechanical::MechanicalModel& model) {
     constexpr double small_wing_m_per_s = 13.0;
-    if (!knows_airspeed(model)) return small_wing_m_per_s;
+    if (!model.physical || !(model.physical->mean_airspeed_m_per_s > 0.0)) return small_wing_m_per_s;
     return model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
 }
 

@@ -41,7 +41,7 @@ TrainingOverlap saw(const std::vector<std::string>& model_flights, const std::st
 std::string no_replay_reason(const MissionSetup& mission, const mechanical::MeasuredFlight& flight) {
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] == 0.0 || flight.power[phase]) continue;
-        return fmt::format("the power of its {} was not measured from end to end", to_string(phase));
+        return fmt::format("the power of its {} was not measured from end to end", phase_word(phase));
     }
     return "";
 }
@@ -54,7 +54,7 @@ void add_notes(const MissionSetup& mission, const mechanical::MeasuredFlight& fl
         replay.notes.emplace_back("the mission's airspeed is not used: the model's cruise is as it was fitted");
     for (const auto phase : all_phases) {
         if (mission.duration_s[phase] > 0.0 || !flight.power[phase]) continue;
-        replay.notes.push_back(fmt::format("the mission has no {}: that of the flight is left out", to_string(phase)));
+        replay.notes.push_back(fmt::format("the mission has no {}: that of the flight is left out", phase_word(phase)));
     }
 }
 

@@ -1,44 +1,24 @@
 #include "path/area.h"
 
-#include "base/number.h"
 #include "path/plan_blocks.h"
-#include "path/plans/flight_plan.h"
-#include "path/plans/json_text.h"
+#include "path/plans/kml.h"
 #include "path/plans/patterns.h"
-#include "path/plans/plan_expressions.h"
 #include "path/waypoint_files.h"
-
-#include <cmath>
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
-#include <pugixml.hpp>
 
 namespace flightwatt::path {
 namespace {
 
 constexpr const char* one_polygon = "expected one polygon, in GeoJSON or KML";
 
-/// "longitude,latitude[,altitude] ..." of <outerBoundaryIs>.
 Outline kml_outline(std::string_view text, const std::string& file) {
-    pugi::xml_document document;
-    if (const auto parsed = document.load_buffer(text.data(), text.size()); !parsed)
-        throw InputError({file}, fmt::format("is not XML: {}", parsed.description()), one_polygon);
+    const auto document = load_kml(text, file, one_polygon);
     const auto outlines = document.select_nodes("//outerBoundaryIs");
     if (outlines.size() != 1) throw InputError({file}, fmt::format("has {} polygons", outlines.size()), one_polygon);
-    Outline outline;
-    outline.has_holes = !document.select_nodes("//innerBoundaryIs").empty();
-    const std::string corners = outlines.first().node().child("LinearRing").child("coordinates").text().get();
-    for (const auto& corner : split(corners, " \t\r\n")) {
-        const auto parts = split(corner, ",");
-        const auto longitude = parse_number(parts.empty() ? "" : parts[0]);
-        const auto latitude = parse_number(parts.size() < 2 ? "" : parts[1]);
-        if (!longitude || !latitude || std::abs(*latitude) > 90.0 || std::abs(*longitude) > 180.0)
-            throw InputError({file}, fmt::format("a corner '{}'", truncated(corner)),
-                             "expected longitude,latitude in degrees");
-        outline.corners.push_back({*latitude, *longitude});
-    }
-    return outline;
+    return {kml_places(document.select_nodes("//outerBoundaryIs/LinearRing/coordinates"), file).places,
+            !document.select_nodes("//innerBoundaryIs").empty()};
 }
 
 }  // namespace

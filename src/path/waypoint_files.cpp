@@ -5,6 +5,7 @@
 #include "base/toml_reader.h"
 #include "path/plan_blocks.h"
 #include "path/plans/json_text.h"
+#include "path/plans/kml.h"
 #include "path/plans/mission_files.h"
 
 #include <algorithm>
@@ -197,6 +198,30 @@ Outline geojson_outline(std::string_view text, const std::string& file) {
     return outline;
 }
 
+PlanEntries parse_kml(std::string_view text, const std::string& file) {
+    constexpr auto hint =
+        "expected KML with a path (LineString) or places (Point); a flight plan of Paparazzi is the path's flight_plan "
+        "with blocks, a polygon of KML its area";
+    const auto document = load_kml(text, file, hint);
+    auto coordinates = document.select_nodes("//LineString/coordinates");
+    const auto points = document.select_nodes("//Point/coordinates");
+    PlanEntries plan;
+    if (coordinates.empty())
+        coordinates = points;
+    else if (!points.empty())
+        plan.not_flown.emplace_back("its points are not flown to: it has a path");
+    const auto found = kml_places(coordinates, file);
+    if (found.places.empty()) throw InputError({file}, "has no waypoints", hint);
+    if (found.has_altitudes) plan.not_flown.emplace_back("the altitudes of KML are not flown: the path is level");
+    for (const auto& place : found.places) {
+        auto& entry = plan.entries.emplace_back();
+        entry.name = fmt::format("waypoint {}", plan.entries.size());
+        entry.where = {file};
+        entry.geographic = place;
+    }
+    return plan;
+}
+
 PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings) {
     auto ending = path.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -208,8 +233,7 @@ PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSet
         case PlanFormat::ardupilot:
             return parse_wpl(text, path.string(), settings);
         case PlanFormat::flight_plan:
-            throw InputError({path.string()}, "is XML, and no list of waypoints",
-                             "a flight plan of Paparazzi is the path's flight_plan with blocks, KML its area");
+            return parse_kml(text, path.string());
         default:
             return {parse_waypoint_csv(text, path.string())};
     }

@@ -11,7 +11,7 @@
 namespace flightwatt::path {
 
 /// Reads the waypoints of a file, in its order: GeoJSON by its ending (.geojson, .json), plans of QGroundControl and
-/// ArduPilot by their content, else CSV (docs/formats.md, Waypoints). Throws InputError, placed in the file.
+/// ArduPilot and KML by their content, else CSV (docs/formats.md, Waypoints). Throws InputError, placed in the file.
 PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings);
 
 /// Reads waypoints from CSV. Throws InputError, placed in the file.
@@ -19,6 +19,9 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
 
 /// Reads waypoints from GeoJSON: Points and LineStrings. Throws InputError, placed in the file.
 std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file);
+
+/// Reads waypoints from KML, level: its LineStrings, without them its Points. Throws InputError.
+PlanEntries parse_kml(std::string_view text, const std::string& file);
 
 /// The outer boundary of an area.
 struct Outline {

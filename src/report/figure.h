@@ -78,11 +78,6 @@ std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t c
     return chosen;
 }
 
-/// Returns the name of a phase for readers: "take-off", "cruise", "landing".
-constexpr std::string_view phase_word(flight::Phase phase) {
-    return phase == flight::Phase::takeoff ? std::string_view("take-off") : to_string(phase);
-}
-
 /// Returns JSON without '<', for an HTML script element.
 std::string script_json(const VegaJson& json);
 

@@ -78,6 +78,9 @@ TEST_F(AnswerTest, WindShortensTheWayOutAndBackAndNotTheTime) {
     EXPECT_EQ(windy.time_s.value, calm.time_s.value);
     const double out_m = 0.5 * windy.distance_m.value.value();
     EXPECT_NEAR(out_m / (12.0 - 6.0) + out_m / (12.0 + 6.0), cruise_s, 1e-6 * cruise_s);
+    EXPECT_NEAR(std::pow(windy.distance_across_m.value() / cruise_s, 2), 144.0 - 36.0, 1e-6);
+    EXPECT_FALSE(calm.distance_across_m);
+    EXPECT_EQ(windy.return_airspeed_m_per_s.value, windy.airspeed_m_per_s.value);
 }
 
 TEST_F(AnswerTest, NoWayBackAgainstAWindAsFastAsTheAircraft) {
@@ -95,6 +98,23 @@ TEST_F(AnswerTest, NoDistanceOfAHover) {
     aircraft.flights.front().ground_speed_m_per_s = 2.1;
     EXPECT_FALSE(answer_endurance(aircraft, {}).is_hover);
     EXPECT_TRUE(answer_endurance(aircraft, {}).distance_m.value);
+}
+
+TEST_F(AnswerTest, ARotorcraftReturnsAgainstTheWindAtTheGroundSpeedItFlew) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.model.is_rotorcraft = true;
+    aircraft.flights.front().ground_speed_m_per_s = 5.0;
+    const auto home = [&](const Question& question) {
+        return answer_endurance(aircraft, question).return_airspeed_m_per_s;
+    };
+    EXPECT_EQ(home({}).value, std::optional(5.0));
+    aircraft.model.physical.emplace().airspeed_m_per_s = {0.0, 10.0};
+    EXPECT_EQ(home({.wind_m_per_s = 3.0}).value, std::optional(8.0));
+    EXPECT_EQ(home({.wind_m_per_s = 3.0}).basis, "assumed: 5.0 m/s over ground as in the flights");
+    EXPECT_THAT(home({.wind_m_per_s = 8.0}).basis, HasSubstr("extrapolated"));
+    EXPECT_EQ(home({.airspeed_m_per_s = 9.0, .wind_m_per_s = 3.0}).value, std::optional(9.0));
+    aircraft.flights.front().ground_speed_m_per_s.reset();
+    EXPECT_THAT(home({.wind_m_per_s = 3.0}).unknown, HasSubstr("a flight with GPS shows it"));
 }
 
 TEST_F(AnswerTest, APayloadThatTheFlightsDoNotShowIsUnknownWithTheRemedy) {

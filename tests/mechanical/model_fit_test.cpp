@@ -150,7 +150,7 @@ TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
 
 TEST(ModelFit, RefusesWhatHasNoAnswer) {
     auto flights = made_up_flights(2, 0.2, 7);
-    EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight has a takeoff to fit"));
+    EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight has a take-off to fit"));
     auto without = flights;
     for (auto& flight : without) flight.phases[flight::Phase::landing].reset();
     EXPECT_THAT(message_of<NoResultError>(without), HasSubstr("no flight has a landing to fit"));

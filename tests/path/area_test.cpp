@@ -58,7 +58,7 @@ TEST(Areas, AreOnePolygon) {
     EXPECT_EQ(refusal("<kml/>"), "a: has 0 polygons; expected one polygon, in GeoJSON or KML");
     EXPECT_EQ(refusal("<kml><outerBoundaryIs><LinearRing><coordinates>8,x</coordinates></LinearRing>"
                       "</outerBoundaryIs></kml>"),
-              "a: a corner '8,x'; expected longitude,latitude in degrees");
+              "a: a place '8,x'; expected longitude,latitude in degrees");
     EXPECT_NE(refusal(geojson(ring), 5000.0).find("no lines 5000 m apart"), std::string::npos);
     EXPECT_NE(refusal(geojson(ring), 1e-9).find("or more than 5000"), std::string::npos);
 }

@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::path {
@@ -94,6 +95,28 @@ TEST(WaypointFiles, OfAutopilotsAreRecognisedByTheirContent) {
     std::ofstream(folder / "a.xml") << "<flight_plan/>";
     EXPECT_NE(rejected([&] { read_waypoints(folder / "a.xml", {}); }).find("flight_plan with blocks"),
               std::string::npos);
+}
+
+TEST(WaypointFiles, AreKmlWithItsPathLevel) {
+    const auto kml = [](const std::string& inner) {
+        return parse_kml("<kml><Document>" + inner + "</Document></kml>", "a.kml");
+    };
+    const std::string point = "<Placemark><Point><coordinates>9,48,0</coordinates></Point></Placemark>";
+    const auto line = [](const char* coordinates) {
+        return fmt::format("<LineString><coordinates>{}</coordinates></LineString>", coordinates);
+    };
+    const auto plan = kml(point + line("8.0,47.0,0 \n8.1,47.1 8.2,47.2,0"));
+    ASSERT_EQ(plan.entries.size(), 3U);
+    EXPECT_EQ(plan.entries[1].geographic->latitude_deg, 47.1);
+    EXPECT_EQ(plan.entries[1].geographic->longitude_deg, 8.1);
+    EXPECT_FALSE(plan.entries[1].altitude_m);
+    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"its points are not flown to: it has a path"});
+    EXPECT_EQ(kml(point + point).entries.size(), 2U);
+    EXPECT_EQ(kml(line("8,47,30 8.1,47.1,30")).not_flown,
+              std::vector<std::string>{"the altitudes of KML are not flown: the path is level"});
+    EXPECT_EQ(rejected([&] { kml(line("8,97")); }), "a.kml: a place '8,97'; expected longitude,latitude in degrees");
+    EXPECT_NE(rejected([&] { kml(""); }).find("a.kml: has no waypoints; expected KML with a path"), std::string::npos);
+    EXPECT_NE(rejected([&] { parse_kml("<kml>", "a.kml"); }).find("a.kml: is not XML"), std::string::npos);
 }
 
 constexpr std::string_view flight_plan = R"(<!DOCTYPE flight_plan SYSTEM "flight_plan.dtd">

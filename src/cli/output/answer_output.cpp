@@ -106,6 +106,16 @@ std::string time_line(const AircraftAnswer& answer) {
     return text;
 }
 
+constexpr double right_angle_deg = 90.0;
+
+/// " (70 and 250 degrees)": the courses at an angle to the wind; empty where its direction is not stated.
+std::string courses_text(const answer::Question& question, double angle_deg) {
+    if (!question.wind_from_deg) return "";
+    constexpr double half_turn_deg = 2.0 * right_angle_deg;
+    const double course_deg = std::fmod(*question.wind_from_deg + angle_deg + 2.0 * half_turn_deg, half_turn_deg);
+    return fmt::format(" ({:.0f} and {:.0f} degrees)", course_deg, course_deg + half_turn_deg);
+}
+
 std::string distance_line(const AircraftAnswer& answer) {
     const auto& endurance = answer.endurance;
     if (!endurance.distance_m.value) return "unknown: " + endurance.distance_m.unknown;
@@ -113,6 +123,11 @@ std::string distance_line(const AircraftAnswer& answer) {
     text += answer.question.wind_m_per_s > 0.0
                 ? fmt::format(" along a wind of {}", speed_text(answer.question.wind_m_per_s))
                 : std::string(" in calm air");
+    if (endurance.distance_across_m) {
+        text += courses_text(answer.question, 0.0);
+        text += fmt::format("; {:.1f} km across it", *endurance.distance_across_m / m_per_km);
+        text += courses_text(answer.question, right_angle_deg);
+    }
     return fmt::format("{} ({})", text, endurance.distance_m.basis);
 }
 
@@ -139,7 +154,10 @@ std::string pack_line(const PackAnswer& pack) {
     text += fmt::format("; {:.3g} mOhm", *pack.resistance_ohm.value * mohm_per_ohm);
     if (const auto& interval = pack.resistance_interval_ohm)
         text += fmt::format(" ({:.3g} to {:.3g})", interval->low * mohm_per_ohm, interval->high * mohm_per_ohm);
-    return text;
+    const auto& air_c = pack.air_temperature_c;
+    return text + (air_c ? fmt::format("; in air of {:.0f} to {:.0f} degC, other temperatures unknown", air_c->low,
+                                       air_c->high)
+                         : std::string("; temperature unknown: no log states it"));
 }
 
 /// The health of each pack; empty where no flight shows one.
@@ -152,22 +170,27 @@ std::string health_line(const std::vector<answer::Pack>& packs) {
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-/// "return at 34 % (2040 mAh left, 22.10 V)".
+/// "return at 34 % or 2040 mAh left (too late in 4.9 of 100 flights), and at 22.10 V in cruise (by itself 42.0)".
 std::string action_text(const char* name, const answer::FailsafeAction& action) {
-    auto text = fmt::format("{} at {} % ({} mAh left", name, action.soc_percent, action.remaining_mah);
-    if (action.voltage) text += fmt::format(", {:.2f} V in cruise", action.voltage->voltage_v);
-    return text + ")";
+    const auto percent = [](double chance) { return units::percent_per_whole * chance; };
+    auto text = fmt::format("{} at {} % or {} mAh left", name, action.soc_percent, action.remaining_mah);
+    if (action.too_late) text += fmt::format(" (too late in {:.1f} of 100 flights)", percent(*action.too_late));
+    if (!action.voltage) return text;
+    text += fmt::format(", and at {:.2f} V in cruise", action.voltage->voltage_v);
+    return text +
+           (action.voltage->too_late ? fmt::format(" (by itself {:.1f})", percent(*action.voltage->too_late)) : "");
 }
 
 std::string failsafe_line(const AircraftAnswer& answer) {
     if (!answer.failsafe) return "unknown: " + answer.failsafe_missing;
     const auto& card = *answer.failsafe;
-    auto text = card.low ? fmt::format("{} from {:.0f} m", action_text("return", *card.low), *card.home_distance_m)
-                         : "return unknown: " + card.low_missing;
+    const auto& [cruise, home] = std::tie(answer.endurance.airspeed_m_per_s, answer.endurance.return_airspeed_m_per_s);
+    auto text = card.low ? fmt::format("{}, from {:.0f} m", action_text("return", *card.low), *card.home_distance_m)
+                         : "return unknown: " + (home.value ? card.low_missing : home.unknown);
+    if (card.low && home.value && home.basis != cruise.basis)
+        text += fmt::format(" at {} ({})", speed_text(*home.value), home.basis);
     text += "; " + action_text("land", card.critical);
-    text += card.chances_known ? fmt::format("; too late in {:.0f} of 100 flights",
-                                             units::percent_per_whole * (1.0 - card.probability))
-                               : std::string("; chances unknown");
+    if (!card.chances_known) text += "; chances unknown: two more flights would show how flights differ";
     return text;
 }
 
@@ -178,8 +201,8 @@ std::string failsafe_command(const AircraftAnswer& answer) {
     auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-ardupilot", answer.folder);
     if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
-    if (answer.endurance.airspeed_m_per_s.value)
-        command += fmt::format(" --airspeed {:.2f}", *answer.endurance.airspeed_m_per_s.value);
+    if (const auto& home = answer.endurance.return_airspeed_m_per_s; home.value)
+        command += fmt::format(" --airspeed {:.2f}", *home.value);
     return "; written by " + command + " (or -px4, -inav, -paparazzi)";
 }
 
@@ -199,6 +222,7 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("reserve_soc_percent", at(&R::question, &Q::reserve_soc_percent), "charge to land with", csv_column{}),
         field("payload_kg", at(&R::question, &Q::payload_kg), "payload; null: as flown", csv_column{}),
         field("wind_m_per_s", at(&R::question, &Q::wind_m_per_s), "steady wind", csv_column{}),
+        field("wind_from_deg", at(&R::question, &Q::wind_from_deg), "null: not stated", csv_column{}),
         field("is_hover", at(&R::endurance, &Endurance::is_hover), "the power is that of hover", csv_column{}),
         field("power_w", at(&R::endurance, &Endurance::power_w), "mean of hover or cruise"),
         field("csv_power_w", value(&Endurance::power_w), "", csv_column{"power_w"}, not_in_json{}),
@@ -210,6 +234,9 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("csv_airspeed_m_per_s", value(&Endurance::airspeed_m_per_s), "", csv_column{"airspeed_m_per_s"},
               not_in_json{}),
         field("distance_m", at(&R::endurance, &Endurance::distance_m), "over ground, out and back along the wind"),
+        field("distance_across_m", at(&R::endurance, &Endurance::distance_across_m), "the same across it; null: calm"),
+        field("return_airspeed_m_per_s", at(&R::endurance, &Endurance::return_airspeed_m_per_s),
+              "of the failsafe's way home"),
         field("csv_distance_m", value(&Endurance::distance_m), "", csv_column{"distance_m"}, not_in_json{}),
         field("best_speeds", at(&R::endurance, &Endurance::best_speeds), "of endurance and range"),
         field("capacity_ah", at(&R::pack, &PackAnswer::capacity_ah), "of the pack"),
@@ -220,12 +247,14 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("csv_resistance_ohm", at(&R::pack, &PackAnswer::resistance_ohm, &Answered::value), "",
               csv_column{"resistance_ohm"}, not_in_json{}),
         field("resistance_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_interval_ohm)),
+        field("air_temperature_c_range", at(&R::pack, &PackAnswer::air_temperature_c), "means of the flights"),
         field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
         field("csv_prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "",
               csv_column{"prediction_error_percent"}, not_in_json{}),
         field("packs", &R::packs, "the packs of the flights"),
         field("failsafe", &R::failsafe, "values for an autopilot; null: unknown"),
         field("failsafe_missing", &R::failsafe_missing, "the reason why they are absent"),
+        field("requirement_missed", &R::requirement_missed, "why --require is missed; empty: it is not"),
         field("notes", at(&R::endurance, &Endurance::notes), "limits of these answers"),
         field("page", &R::page, "file of the report; empty without one"));
 }

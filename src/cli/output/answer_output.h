@@ -34,6 +34,7 @@ struct AircraftAnswer {
     answer::Answered prediction_error_percent;     ///< of the energy of flights left out
     std::optional<answer::FailsafeCard> failsafe;  ///< of the mission that is asked for
     std::string failsafe_missing;                  ///< the reason why it is absent
+    std::string requirement_missed;                ///< why --require is missed; empty: not, or nothing is required
     std::string page;                              ///< file of the report; empty without one
 };
 Fields<AircraftAnswer> record_fields(const AircraftAnswer*);

@@ -267,7 +267,7 @@ void add_other_aircraft(const StageCall& call, const std::string& flight, const 
 Diagnostic diagnostic_of(const mechanical::Exclusion& exclusion) {
     const auto& [flight, phase, reason] = exclusion;
     return {Severity::warning, phase ? "phases not used" : "not used: " + kind_of_reason(reason),
-            fmt::format("{} is not used in the fit: {}", phase ? to_string(*phase) : "it", reason), flight};
+            fmt::format("{} is not used in the fit: {}", phase ? phase_word(*phase) : "it", reason), flight};
 }
 
 void leave_out(const StageCall& call, const FlightArguments& arguments, const std::string& file,

@@ -32,7 +32,7 @@ std::vector<answer::PackUse> read_pack_uses(const StageCall& call, FlightArgumen
         } catch (const InputError& error) {
             refusals.emplace_back(file,
                                   Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
-                                             fmt::format("it is excluded: {}", error.what()), loaded.series.flight});
+                                             fmt::format("it is not used: {}", error.what()), loaded.series.flight});
             refused.emplace(error);
             return std::vector<answer::PackUse>{};
         }

@@ -115,7 +115,7 @@ Findings phase_difference(const PowerRecord& record) {
             const double limit_wh = max_phase_fraction * std::abs(count_wh) + 2.0 * record.energy_wh.resolution;
             findings.push_back(
                 {difference_wh / limit_wh, fmt::format("{} at {:.0f} s: {:.3f} Wh were measured and {:.3f} Wh counted",
-                                                       to_string(span.phase), span.start.time_s, measured, count_wh)});
+                                                       phase_word(span.phase), span.start.time_s, measured, count_wh)});
         }
     }
     return findings;

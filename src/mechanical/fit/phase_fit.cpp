@@ -184,14 +184,14 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
 
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", to_string(phase)));
+    if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", phase_word(phase)));
     for (const auto& flight : flights) {
         if (flight.tau.size() >= min_samples(options.order)) continue;
         throw NoResultError(
             fmt::format("flight '{}' has {} samples in {}, a Fourier series of order {} needs {}: "
                         "exclude its {}, or lower the order",
-                        flight.flight, flight.tau.size(), to_string(phase), options.order, min_samples(options.order),
-                        to_string(phase)));
+                        flight.flight, flight.tau.size(), phase_word(phase), options.order, min_samples(options.order),
+                        phase_word(phase)));
     }
     const auto centred = centred_flights(flights);
     const int order = options.order;

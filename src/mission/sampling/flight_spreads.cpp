@@ -64,13 +64,13 @@ void find_level(const MissionSetup& mission, Phase phase, FlightUncertainty& spr
         }
         estimated.push_back(std::move(spread));
     }
-    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", to_string(phase)), basis);
+    note_source(spreads, deviation.sd_w > 0.0, fmt::format("{} level", phase_word(phase)), basis);
 }
 
 /// Durations that the mission states are fixed, unless [uncertainty] varies them.
 void find_duration(const MissionSetup& mission, Phase phase, FlightUncertainty& spreads,
                    std::vector<EstimatedSpread>& estimated) {
-    const auto source = fmt::format("{} duration", to_string(phase));
+    const auto source = fmt::format("{} duration", phase_word(phase));
     if (phase == Phase::cruise && mission.cruise_path)
         return note_source(spreads, has_wind_spread(mission), source, "as the path and the wind make it");
     auto& sd_s = spreads.duration_sd_s[phase];

@@ -270,7 +270,7 @@ void refuse_charging(const MissionSetup& mission, const std::vector<LoadSegment>
             {mission.file},
             fmt::format("{}: {:.1f} s into the {} it draws {:.4g} W ({:.4g} W mechanical, {:.4g} W computing), which "
                         "charges the battery in flight",
-                        mission.name, least.time_s, to_string(segment.phase), least.power_w + segment.compute_w,
+                        mission.name, least.time_s, phase_word(segment.phase), least.power_w + segment.compute_w,
                         least.power_w, segment.compute_w),
             "check the model or profile and fit it again (another order, flights with correct power), or "
             "state may_charge = true if a source aboard charges the battery");

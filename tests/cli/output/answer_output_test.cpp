@@ -1,0 +1,73 @@
+#include "cli/output/answer_output.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::cli {
+namespace {
+
+using answer::known;
+using testing::HasSubstr;
+using testing::Not;
+
+AircraftAnswer answered() {
+    AircraftAnswer answer;
+    answer.endurance.power_w = known(400.0, "measured on 3 flights");
+    answer.endurance.airspeed_m_per_s = known(12.0, "measured in cruise");
+    answer.endurance.return_airspeed_m_per_s = answer.endurance.airspeed_m_per_s;
+    answer.endurance.distance_m = known(9000.0, "measured in cruise");
+    auto& card = answer.failsafe.emplace();
+    card.home_distance_m = 500.0;
+    auto& low = card.low.emplace();
+    low.soc_percent = 39;
+    low.remaining_mah = 2307;
+    low.too_late = 0.049;
+    low.voltage = {14.16, 0.123, 0.0};
+    card.critical.soc_percent = 21;
+    card.critical.remaining_mah = 1209;
+    card.critical.too_late = 0.01;
+    return answer;
+}
+
+std::string text_of(const AircraftAnswer& answer) { return answer_text(answer, 1000); }
+
+TEST(AnswerText, EachActionHasItsOwnChanceOfBeingTooLate) {
+    auto answer = answered();
+    EXPECT_THAT(text_of(answer),
+                HasSubstr("return at 39 % or 2307 mAh left (too late in 4.9 of 100 flights), and "
+                          "at 14.16 V in cruise (by itself 12.3), from 500 m; land at 21 % or 1209 mAh "
+                          "left (too late in 1.0 of 100 flights); written by"));
+    answer.failsafe->chances_known = false;
+    for (auto* action : {&*answer.failsafe->low, &answer.failsafe->critical}) action->too_late.reset();
+    EXPECT_THAT(text_of(answer), HasSubstr("1209 mAh left; chances unknown: two more flights would show"));
+}
+
+TEST(AnswerText, AssumedSpeedOfTheWayHomeIsNamed) {
+    auto answer = answered();
+    EXPECT_THAT(text_of(answer), Not(HasSubstr("from 500 m at")));
+    answer.endurance.return_airspeed_m_per_s = known(8.0, "assumed: 2.0 m/s over ground as in the flights");
+    EXPECT_THAT(text_of(answer), HasSubstr("from 500 m at 8.0 m/s (assumed: 2.0 m/s over ground as in the flights);"));
+    EXPECT_THAT(text_of(answer), HasSubstr("--airspeed 8.00"));
+}
+
+TEST(AnswerText, DirectionOfTheWindMakesTheCourses) {
+    auto answer = answered();
+    EXPECT_THAT(text_of(answer), HasSubstr("9.0 km in all, out and back in calm air (measured"));
+    answer.question.wind_m_per_s = 6.0;
+    answer.endurance.distance_across_m = 10400.0;
+    EXPECT_THAT(text_of(answer), HasSubstr("along a wind of 6.0 m/s; 10.4 km across it (measured"));
+    answer.question.wind_from_deg = 250.0;
+    EXPECT_THAT(text_of(answer), HasSubstr("along a wind of 6.0 m/s (70 and 250 degrees); 10.4 km across it (160 and "
+                                           "340 degrees)"));
+}
+
+TEST(AnswerText, TemperatureOfThePackIsThatOfTheLogs) {
+    auto answer = answered();
+    answer.pack.resistance_ohm = known(0.02, "measured on 3 flights");
+    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; temperature unknown: no log states it"));
+    answer.pack.air_temperature_c = Interval{4.0, 12.0};
+    EXPECT_THAT(text_of(answer), HasSubstr("in air of 4 to 12 degC, other temperatures unknown"));
+}
+
+}  // namespace
+}  // namespace flightwatt::cli
