@@ -1,5 +1,6 @@
 #include "answer/answer.h"
 
+#include "answer/failsafe.h"
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/text.h"
@@ -20,8 +21,8 @@ namespace {
 using flight::Phase;
 
 constexpr double in_95_of_100 = 0.95;
-/// A rotorcraft whose cruises are slower than this hovers.
-constexpr double max_hover_m_per_s = 2.0;
+/// A rotorcraft whose cruises are slower than this hovers; chosen with a Y6 in view that drifts with 2.2 m/s.
+constexpr double max_hover_m_per_s = 3.0;
 
 /// The airspeed at which a mission predicts the power: what is asked, or of a rotorcraft the wind that it holds against.
 std::optional<double> mission_airspeed_m_per_s(const KnownAircraft& aircraft, const Question& question) {
@@ -55,16 +56,25 @@ Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question
     return unknown("the logs have neither airspeed nor position; a flight with GPS shows it");
 }
 
-/// The airspeed of the way home: that of the cruise; against a wind a rotorcraft keeps the speed over ground it flew.
+/// The airspeed of the way home: that of the cruise; of a rotorcraft its speed over ground, against the wind.
 Answered return_airspeed(const KnownAircraft& aircraft, const Question& question, const Answered& cruise) {
-    if (question.airspeed_m_per_s || !aircraft.model.is_rotorcraft || question.wind_m_per_s == 0.0) return cruise;
-    const auto over_ground = mean_ground_speed_m_per_s(aircraft.flights);
-    if (!over_ground) return unknown("no log has its speed; a flight with GPS shows it, --airspeed states it");
-    const double speed = *over_ground + question.wind_m_per_s;
-    auto basis = fmt::format("assumed: {:.1f} m/s over ground as in the flights", *over_ground);
+    if (question.airspeed_m_per_s || !aircraft.model.is_rotorcraft) return cruise;
+    const double flown = mean_ground_speed_m_per_s(aircraft.flights).value_or(0.0);
+    if (question.wind_m_per_s == 0.0 && flown >= least_return_m_per_s) return cruise;
+    const double speed = std::max(flown, least_return_m_per_s) + question.wind_m_per_s;
+    auto basis =
+        flown >= least_return_m_per_s
+            ? fmt::format("assumed: {:.1f} m/s over ground as in the flights", flown)
+            : fmt::format("assumed: {:g} m/s over ground, as slow as autopilots return; --airspeed states yours",
+                          least_return_m_per_s);
     const auto& physical = aircraft.model.physical;
     if (!physical)
         basis += ", at their power";
+    else if (speed > max_predicted_airspeed_m_per_s(*physical))
+        return unknown(
+            fmt::format("{:.1f} m/s of airspeed are beyond what its flights show; --airspeed states a slower "
+                        "way home",
+                        speed));
     else if (!is_within_flown_range(*physical, {speed, 0.0, 1.0}))
         basis += "; faster than flown, its power is extrapolated";
     return known(speed, std::move(basis));

@@ -190,7 +190,9 @@ WayHome way_home(const FailsafeRequest& request) {
     way.course_deg = request.home_course_deg.value_or(0.0);
     if (!request.home_course_deg) way.wind.from_deg = way.course_deg;
     const auto& physical = request.model.physical;
-    way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(physical ? physical->mean_airspeed_m_per_s : 0.0);
+    const double flown = physical ? physical->mean_airspeed_m_per_s : 0.0;
+    const double usual = request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) : flown;
+    way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(usual);
     if (!way.distance_m) {
         way.missing = "the distance to home is not known; a flight with GPS shows it, --home-distance states it";
     } else if (!(way.airspeed_m_per_s > 0.0)) {
@@ -245,7 +247,9 @@ mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHo
         leg.shape = path::Leg{distance_m, way.course_deg};
         leg.airspeed_m_per_s = way.airspeed_m_per_s;
         leg.name = "the way home";
-        set_cruise_path(setup, {{{leg}}, way.wind, request.model.physical.value_or(constant_power(request.model))});
+        auto power = request.model.physical.value_or(constant_power(request.model));
+        if (request.model.physical) add_constant_power(power_beyond_straight_flight_w(request.model), power);
+        set_cruise_path(setup, {{{leg}}, way.wind, std::move(power)});
         if (!request.model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
         return setup;
     }
@@ -266,6 +270,7 @@ Fleet make_fleet(const FailsafeRequest& request, const WayHome& way) {
     fleet.chances_known = fleet.drawn.variability_is_known;
     if (!fleet.chances_known) {
         for (const auto phase : {cruise, landing}) setup.uncertainty.level_sd_percent[phase] = assumed_level_sd_percent;
+        setup.uncertainty.duration_sd_s[landing] = setup.duration_s[landing];
         fleet.drawn = draw_flights(setup, {drawn_flights, seed, 0});
     }
     for (const auto& loads : fleet.drawn.flights)
@@ -326,7 +331,8 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
         add(Ground::measured, "chances: drawn as the model's flights and the pack's intervals differ");
     else
         add(Ground::assumption, fmt::format("chances: unknown, as the model does not show how flights differ; the "
-                                            "values assume a standard deviation of {:g} % of the power",
+                                            "values assume a standard deviation of {:g} % of the power, "
+                                            "and of the landing's whole duration",
                                             assumed_level_sd_percent));
     add(Ground::assumption, "pack: full at power-on, its charge counted by a calibrated sensor");
     return grounds;

@@ -26,8 +26,12 @@ namespace flightwatt::answer {
 /// Reserve [%] of a request that states none.
 inline constexpr double assumed_reserve_percent = 20.0;
 
-/// Standard deviation of power between flights [%] that the values assume where the model has none (a single flight).
-inline constexpr double assumed_level_sd_percent = 15.0;
+/// Standard deviation of power between flights [%] that the values assume where the model has none (a single flight). Also
+/// the duration of the landing then differs by itself (1 sd): less knowledge must not give a lower threshold.
+inline constexpr double assumed_level_sd_percent = 25.0;
+
+/// Airspeed of the way home of a rotorcraft whose flights were slower [m/s]: the low end of what autopilots return with.
+inline constexpr double least_return_m_per_s = 5.0;
 
 /// The part of the reserve that the critical action keeps.
 inline constexpr double critical_reserve_part = 0.5;

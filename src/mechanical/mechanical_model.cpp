@@ -469,4 +469,13 @@ std::string to_toml(const MechanicalModel& model) {
            format_line() + fields.lines() + "\n";
 }
 
+double power_beyond_straight_flight_w(const MechanicalModel& model) {
+    const auto& physical = model.physical;
+    if (!physical || !(physical->mean_airspeed_m_per_s > 0.0)) return 0.0;
+    const auto& cruise = model.phases[flight::Phase::cruise];
+    const auto straight = term_values({physical->mean_airspeed_m_per_s}, physical->load);
+    return std::max(0.0, energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s -
+                             std::max(0.0, sum_of_terms_w(*physical, straight)));
+}
+
 }  // namespace flightwatt::mechanical

@@ -117,6 +117,14 @@ ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean
     return power;
 }
 
+void add_constant_power(double power_w, PhysicalModel& model) {
+    model.coefficients[PowerTerm::constant] += power_w;
+    if (std::ranges::find(model.terms, PowerTerm::constant) != model.terms.end()) return;
+    model.terms.push_back(PowerTerm::constant);
+    for (auto& row : model.covariance) row.push_back(0.0);
+    model.covariance.emplace_back(model.terms.size(), 0.0);
+}
+
 double max_predicted_airspeed_m_per_s(const PhysicalModel& model) {
     constexpr double beyond_flown = 1.25;
     constexpr double like_hover_m_per_s = 8.0;

@@ -132,6 +132,9 @@ double power_w(const PhysicalModel& model, const FlightState& motion);
 /// The sum of the terms [W], which may be below 0: the means over a time of the terms give the mean power.
 double sum_of_terms_w(const PhysicalModel& model, const TermValues& values);
 
+/// Adds a power that does not depend on the motion.
+void add_constant_power(double power_w, PhysicalModel& model);
+
 /// The variance [W^2] of that sum by the coefficients' covariance.
 double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values);
 

@@ -49,7 +49,7 @@ const std::vector<Statement> statements{
     {"guide.md", "or 32 without `--aircraft`", "flight/flight_file.cpp", "max_candidates = 32;"},
     {"guide.md", "power above 100 million", "flight/load_flight.cpp", "max_work = 100'000'000;"},
     {"exports.md", "keep half of the reserve", "answer/failsafe.h", "critical_reserve_part = 0.5;"},
-    {"exports.md", "standard deviation of 15 % of the power", "answer/failsafe.h", "assumed_level_sd_percent = 15.0;"},
+    {"exports.md", "standard deviation of 25 % of the power", "answer/failsafe.h", "assumed_level_sd_percent = 25.0;"},
     {"exports.md", "`BAT_CRIT_THR` to 0.25", "exchange/failsafe_parameters.cpp", "{\"BAT_CRIT_THR\", 0.05, 0.25}"},
     {"exports.md", "`BAT_EMERGEN_THR` to 0.1;", "exchange/failsafe_parameters.cpp", "{\"BAT_EMERGEN_THR\", 0.03, 0.1}"},
     {"live.md", "below the reserve is 5 % or more", "live/state/moment.cpp", "caution_probability = 0.05;"},

@@ -41,15 +41,6 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
     mission.cruise_level = level;
 }
 
-/// What the cruise of the model's flights takes beyond level flight straight ahead at their mean airspeed [W].
-double power_beyond_straight_flight_w(const MissionSetup& mission, const mechanical::PhysicalModel& physical) {
-    if (!(physical.mean_airspeed_m_per_s > 0.0)) return 0.0;
-    const auto& cruise = mission.mechanical->phases[Phase::cruise];
-    const auto straight =
-        predicted_power(physical, term_values({physical.mean_airspeed_m_per_s}, physical.load), cruise.duration_s);
-    return std::max(0.0, energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s - straight.mean_w);
-}
-
 std::string near_flown_hint(const mechanical::PhysicalModel& physical) {
     return fmt::format(
         "they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights that were flown so",
@@ -283,7 +274,7 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     mission.airspeed_m_per_s = airspeed;
     const double duration_s = mission.mechanical->phases[Phase::cruise].duration_s;
     auto level = predicted_power(physical, term_values(motion, physical.load), duration_s);
-    const double added_w = power_beyond_straight_flight_w(mission, physical);
+    const double added_w = power_beyond_straight_flight_w(*mission.mechanical);
     level.mean_w += added_w;
     if (added_w > noted_part * level.mean_w)
         mission.notes.push_back(fmt::format(
