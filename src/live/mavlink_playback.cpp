@@ -96,7 +96,9 @@ class AircraftSender {
 
   private:
     void add(double time_s, std::string_view name, const telemetry::MavlinkSender::Values& values) {
-        messages_.push_back({.time_s = time_s, .packet = sender_.packet(name, values)});
+        auto& message = messages_.emplace_back();
+        message.time_s = time_s;
+        message.packet = sender_.packet(name, values);
     }
 
     const flight::FlightData& data_;

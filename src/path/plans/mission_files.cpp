@@ -95,6 +95,12 @@ class ItemReader {
     }
 
     PlanEntries finish(const Location& where) {
+        if (home_ && !entries_.empty() && !takes_off_) {  // a plan without a take-off is flown from home, too
+            entries_.insert(entries_.begin(), PathEntry{});
+            entries_.front().name = "home";
+            entries_.front().where = where;
+            entries_.front().geographic = home_;
+        }
         PlanEntries plan{std::move(entries_), {}, true};
         for (const auto& [text, items] : reports_)
             plan.not_flown.push_back(fmt::format(
@@ -163,6 +169,7 @@ class ItemReader {
         if (!entry.geographic) entry.geographic = home_;
         if (!entries_.empty() || !entry.geographic) return report(item, "the take-off is not flown");
         entries_.push_back(entry);
+        takes_off_ = true;
     }
 
     void go_home(const MissionItem& item) {
@@ -205,6 +212,7 @@ class ItemReader {
     const AutopilotSettings& settings_;
     std::optional<GeodeticPosition> home_;
     double home_altitude_m_ = 0.0;
+    bool takes_off_ = false;  ///< an item states where
     std::optional<double> airspeed_m_per_s_;
     std::vector<PathEntry> entries_;
     std::map<std::string, ReportedItems> reports_;
