@@ -259,7 +259,6 @@ PowerSampler sampler_of(const Sensor& sensor, const std::vector<std::string>& wa
     return sampler;
 }
 
-
 /// A pseudo terminal without echo and translations: programs that print through stdio flush each line into it, into a
 /// pipe only each block. `ends`: ours, the program's. Returns false with errno without one.
 bool open_terminal(int (&ends)[2]) {
