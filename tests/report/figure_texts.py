@@ -7,7 +7,7 @@ import sys
 import xml.etree.ElementTree as xml
 
 SVG = "{http://www.w3.org/2000/svg}"
-LETTER = 0.5  # width of a letter [type sizes], at least; a little overlap of the boxes is none of the letters
+LETTER = 0.5  # width of a letter [type sizes], at least; boxes may overlap a little where letters do not
 
 
 def boxes(element, left, top, found):

@@ -156,7 +156,7 @@ class Vehicle {
     void note_restart(double boot_s, double time_s) {
         constexpr double restart_s = 2.0;  // a late packet is not
         if (boot_s < boot_s_ - restart_s && rows_.facts().notes.size() < 10)
-            rows_.facts().notes.push_back(fmt::format("the autopilot started anew at {:.1f} s", time_s));
+            rows_.facts().notes.push_back(fmt::format("the autopilot restarted at {:.1f} s", time_s));
         boot_s_ = boot_s;
     }
 

@@ -318,7 +318,7 @@ TEST(PathToml, APlannedMissionFindsItsWaypoints) {
     EXPECT_EQ(again.setup.duration_s[Phase::cruise], mission.setup.duration_s[Phase::cruise]);
 }
 
-// A wing that circled took twice what straight flight at the same airspeed was said to take.
+// A wing that circled took twice the power that straight flight at the same airspeed was predicted to take.
 TEST(AirspeedToml, KeepsWhatTurnsAndGustsOfTheFlightsTook) {
     const auto folder = folder_with_opterra();
     auto model = mechanical::read_mechanical_model(folder / "opterra.toml");

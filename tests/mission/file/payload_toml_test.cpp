@@ -113,7 +113,7 @@ TEST(PayloadToml, IsRefusedWhereItsEffectIsUnknown) {
     EXPECT_THAT(refusal(model_of({}, true), "takeoff_mass_kg = 2\n"), HasSubstr("belongs to payload_kg"));
 }
 
-// Grams for kilograms gave a megawatt, or let the payload vanish.
+// Grams for kilograms gave a megawatt, or a payload without effect.
 TEST(PayloadToml, RefusesMassesThatCannotBeKilograms) {
     const auto model = model_of({}, true);
     EXPECT_THAT(test::rejected([&] { mission_on(model, "payload_kg = 0.5\ntakeoff_mass_kg = 2900\n"); }),
@@ -122,7 +122,7 @@ TEST(PayloadToml, RefusesMassesThatCannotBeKilograms) {
                 HasSubstr("a payload of 500 kg on an aircraft of 2.5 kg; give it in kilograms"));
 }
 
-// A rotorcraft that hovered was said to fly any speed with the power of its hover.
+// A rotorcraft that hovered was predicted to fly at any airspeed with the power of its hover.
 TEST(PayloadToml, RefusesAirspeedsThatAModelWithoutDragCannotKnow) {
     const auto model = model_of({PowerTerm::constant}, true);
     EXPECT_NO_THROW(mission_on(model, "airspeed_m_per_s = 8\n"));

@@ -93,7 +93,7 @@ TEST(Tlog, StatesLostMessagesAndARestartOfTheAutopilot) {
         if (i % 4 != 3) log += test::tlog_entry(i, packet);
     }
     const auto notes = read(log).front().facts.notes;
-    EXPECT_THAT(notes, Contains(HasSubstr("the autopilot started anew at 50.0 s")));
+    EXPECT_THAT(notes, Contains(HasSubstr("the autopilot restarted at 50.0 s")));
     EXPECT_THAT(notes, Contains(HasSubstr("24.0 % of the messages of system 1 were lost on the link")));
 }
 
