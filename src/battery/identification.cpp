@@ -35,13 +35,18 @@ struct FittedFlights {
     std::vector<std::optional<FlightCapacity>> capacities;
 };
 
-/// From three flights on the resistance's interval is at least that of the mean of the flights' own.
+/// Of two flights the resistance's interval has both of the flights' own; from three on it is at least that of their mean.
 void widen_by_flights(std::span<const std::optional<FlightResistance>> resistances, double fitted_ohm,
                       Interval& interval_ohm) {
     std::vector<double> own_ohm;
     for (const auto& own : resistances)
         if (own) own_ohm.push_back(own->value_ohm);
-    if (own_ohm.size() < 3) return;
+    if (own_ohm.size() < 2) return;
+    if (own_ohm.size() == 2) {
+        interval_ohm.low = std::min({interval_ohm.low, own_ohm[0], own_ohm[1]});
+        interval_ohm.high = std::max({interval_ohm.high, own_ohm[0], own_ohm[1]});
+        return;
+    }
     const auto flights = static_cast<double>(own_ohm.size());
     const double half_ohm = student_t_half_width(flights - 1.0) * sample_sd(own_ohm) / std::sqrt(flights);
     interval_ohm.low = std::min(interval_ohm.low, std::max(0.0, fitted_ohm - half_ohm));

@@ -22,7 +22,7 @@ namespace {
 
 /// Limit of the extrapolated power relative to that of the airspeeds that were flown, and of its inverse.
 constexpr double max_power_ratio = 2.0;
-constexpr double noted_part = 0.05;  // of the power: less is within what flights differ by
+constexpr double noted_part = 0.2;  // of the power
 
 /// Throws InputError at `where` if the model has no physical part.
 const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& model, const Location& where) {
