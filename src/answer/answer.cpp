@@ -62,11 +62,9 @@ Answered return_airspeed(const KnownAircraft& aircraft, const Question& question
     const double flown = mean_ground_speed_m_per_s(aircraft.flights).value_or(0.0);
     if (question.wind_m_per_s == 0.0 && flown >= least_return_m_per_s) return cruise;
     const double speed = std::max(flown, least_return_m_per_s) + question.wind_m_per_s;
-    auto basis =
-        flown >= least_return_m_per_s
-            ? fmt::format("assumed: {:.1f} m/s over ground as in the flights", flown)
-            : fmt::format("assumed: {:g} m/s over ground, as slow as autopilots return; --airspeed states yours",
-                          least_return_m_per_s);
+    auto basis = flown >= least_return_m_per_s
+                     ? fmt::format("assumed: {:.1f} m/s over ground as in the flights", flown)
+                     : std::string("assumed, as slow as autopilots return; --airspeed states yours");
     const auto& physical = aircraft.model.physical;
     if (!physical)
         basis += ", at their power";
@@ -76,7 +74,7 @@ Answered return_airspeed(const KnownAircraft& aircraft, const Question& question
                         "way home",
                         speed));
     else if (!is_within_flown_range(*physical, {speed, 0.0, 1.0}))
-        basis += "; faster than flown, its power is extrapolated";
+        basis += "; its power is extrapolated";
     return known(speed, std::move(basis));
 }
 
