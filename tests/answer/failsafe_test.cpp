@@ -144,7 +144,7 @@ TEST(FailsafeCard, CountsFromTheCapacity) {
     EXPECT_GE(low.soc_percent * 32.0, low.remaining_mah) << "rounded to the safe side";
     EXPECT_LT((low.soc_percent - 1) * 32.0, low.remaining_mah);
     EXPECT_LE(low.too_late.value(), 0.05);
-    EXPECT_NEAR(low.too_late.value(), 0.05, 0.01);
+    EXPECT_NEAR(low.too_late.value(), 0.05, 0.015);
     EXPECT_TRUE(low.too_late_95->low <= low.too_late && *low.too_late <= low.too_late_95->high);
 }
 

@@ -302,7 +302,7 @@ TEST(PowerWarnings, CompareEachPhaseWithItsCounterAlsoWhereTheWholeIsDoubtful) {
         });
     };
     const auto whole = testing::Contains(HasSubstr("away from the on-board energy counter"));
-    const auto phase = testing::Contains(testing::ContainsRegex("takeoff at .* Wh were measured and .* Wh counted"));
+    const auto phase = testing::Contains(testing::ContainsRegex("take-off at .* Wh were measured and .* Wh counted"));
     EXPECT_THAT(texts_of(lacking(0.5).diagnostics), testing::AllOf(whole, phase));
     EXPECT_THAT(texts_of(lacking(0.95).diagnostics), testing::AllOf(whole, Not(phase)));
 }
