@@ -157,6 +157,7 @@ std::string write_page(const cli::StageCall& call, const cli::AircraftAnswer& an
     report::ReportInput input;
     input.out = answer.folder;
     input.missions = {mission};
+    input.are_longest = answer.endurance.cruise_s.has_value();
     input.front = report::answer_section(answer, failsafe_texts(answer.failsafe, setup_of(mission)));
     const report::ReportLog log{[&](const std::string& text) {
         cli::add_diagnostic(call, {Severity::note, "the page", text});

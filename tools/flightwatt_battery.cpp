@@ -58,7 +58,7 @@ int identify(const cli::StageCall& call, const BatteryArguments& arguments) {
     } else if (call.output) {
         const auto screen = screen_of(call);
         const cli::ScreenTable flights{
-            fmt::format("{} flights", records.size()),
+            fmt::format("{} flight{}", records.size(), records.size() == 1 ? "" : "s"),
             {"flight", "own ohm", "drawn Ah", "missing Ah", "leave-one-out mV", "at rest V"}};
         cli::print(screen_text(cli::pack_table(identified.battery), screen, {identified.battery.name, {}}) + "\n" +
                    screen_text(cli::flights_table(identified, left_out), screen, flights));

@@ -132,7 +132,12 @@ const Format& format_of(const cli::StageCall& call, const std::optional<std::str
     for (const auto& format : formats())
         if (name ? format.name == *name : !ending.empty() && format.ending == ending) return format;
     const auto names = names_of_formats([](const Format&) { return true; });
-    if (name) throw UsageError(fmt::format("--format {}: expected one of {}", *name, names));
+    if (name) {
+        const auto near = std::ranges::find_if(
+            formats(), [&](const Format& format) { return std::string_view(format.name).ends_with("-" + *name); });
+        throw UsageError(fmt::format("--format {}: expected one of {}{}", *name, names,
+                                     near == formats().end() ? "" : fmt::format("; did you mean '{}'?", near->name)));
+    }
     throw UsageError(
         fmt::format("expected -o FILE that ends in .geojson, .kml, .gpx, .csv, .json, .h, .params, .parm, .sdf or "
                     ".tex, or --format NAME, one of {}",

@@ -72,7 +72,9 @@ void fit_flights(const cli::StageCall& call, FitStageArguments arguments,
         cli::print_json(call, cli::FitOutput{&fitted.model, physical ? &*physical : nullptr, true});
     } else if (call.output) {
         const auto screen = screen_of(call);
-        const cli::ScreenTable shown{fmt::format("{}: Table I of {} flights", fitted.model.name, flights.size()), {}};
+        const cli::ScreenTable shown{fmt::format("{}: Table I of {} flight{}", fitted.model.name, flights.size(),
+                                                 flights.size() == 1 ? "" : "s"),
+                                     {}};
         const cli::ScreenTable means{"mean power of the phases", {}};
         cli::print(screen_text(cli::mean_power_table(fitted.model), screen, means) + "\n" +
                    screen_text(table, screen, shown) + (physical ? "\n" + cli::physical_text(*physical, screen) : ""));

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <string_view>
 
 #include <boost/algorithm/string.hpp>
 #include <fmt/format.h>
@@ -107,13 +109,27 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     return fresh;
 }
 
-/// The mission as `simulate` reads it. What is wrong with a plan is placed there, and not in the mission to be written.
+/// The option that states the key in a line of the mission; empty if none does.
+std::string option_of(std::string_view text, std::size_t line) {
+    for (; line > 1; --line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+    const std::string key(text.substr(0, text.find(' ')));
+    const std::map<std::string, std::string> options{
+        {"payload_kg", "--payload"}, {"takeoff_mass_kg", "--mass"}, {"speed_m_per_s", "--wind"}};
+    const auto found = options.find(key);
+    return found == options.end() ? "" : found->second;
+}
+
+/// The mission as `simulate` reads it. What is wrong with an option or a plan is placed there, and not in the mission,
+/// which is not written.
 mission::MissionVariant read_again(const std::string& text, const std::filesystem::path& file,
                                    const NewMissionArguments& arguments) {
     try {
         return mission::parse_mission(text, file, {.allow_unplanned = arguments.mission.is_planned});
     } catch (const InputError& error) {
-        if (!arguments.plan || error.where().file != file) throw;
+        if (error.where().file != file) throw;
+        if (const auto option = option_of(text, error.where().line); !option.empty())
+            throw InputError({"new-mission " + option}, error.what(), error.hint());
+        if (!arguments.plan) throw;
         throw InputError({*arguments.plan}, error.what(), error.hint());
     }
 }
@@ -178,9 +194,10 @@ key as a comment, with its meaning and an example.)"};
                 "duration of the cruise: 1800, 30min or 0.5h; default: the mean of the model's flights");
     options.add("payload", arguments.mission.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
                 "what the aircraft carries beyond its own mass");
-    options.add("takeoff-mass", arguments.mission.takeoff_mass_kg,
-                {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}},
-                "its mass as its flights were flown, where they do not show the effect of payload");
+    options.add(
+        "mass", arguments.mission.takeoff_mass_kg,
+        {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}, .old_name = "takeoff-mass"},
+        "mass of the aircraft as it flew, where its flights do not show the effect of payload");
     options.add("plan", arguments.plan, cli::input_file("FILE"),
                 "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
     options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},

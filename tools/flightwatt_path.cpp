@@ -206,7 +206,10 @@ a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, a
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
     stage.next = [](const auto& call) {
-        return call.inputs.empty() ? "waypoints = \"{}\" in the [path] of a mission" : "flightwatt simulate {in}";
+        if (call.inputs.empty()) return "waypoints = \"{}\" in the [path] of a mission";
+        return call.inputs.front().ends_with(".toml")
+                   ? "flightwatt simulate {in}"
+                   : "flightwatt new-mission --model MODEL.toml --battery PACK.toml --plan {in} -o mission.toml";
     };
     stage.json_schema = cli::document_schema<PathOutput, PlanFileOutput, FlightPathOutput>;
     stage.min_inputs = 0;

@@ -188,7 +188,12 @@ int print_reach(const cli::StageCall& call, const PlanArguments& arguments, cons
     constexpr std::array<std::pair<const char*, const char*>, 3> questions{
         {{"longest_cruise_s", "s"}, {"most_circles", "circles"}, {"farthest_return_m", "m"}}};
     const auto& [question, unit] = questions.at(static_cast<std::size_t>(reach.unit));
-    return print_limit(call, arguments, setup, question, unit, reach.limit);
+    const int code = print_limit(call, arguments, setup, question, unit, reach.limit);
+    if (reach.unit == mission::ReachUnit::return_m && !call.json &&
+        reach.limit.value >= length_of_legs_m(setup.cruise_path->plan->path))
+        cli::note(call, fmt::format("{}: the whole path and the way back fit: that is the path's length, and no limit",
+                                    setup.name));
+    return code;
 }
 
 int plan_file(const cli::StageCall& call, const PlanArguments& arguments) {

@@ -79,7 +79,7 @@ Watched read_watched(const cli::StageCall& call, const cli::BasisArguments& argu
     if (arguments.mission || arguments.model)
         watched.basis = cli::read_basis(call, arguments, &watched.mission);
     else if (arguments.battery || arguments.remaining_s)
-        throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
+        throw UsageError("no model given: expected --mission MISSION.toml, or --model MODEL.toml");
     if (watched.mission) watched.compute = setup_of(*watched.mission).compute;
     return watched;
 }

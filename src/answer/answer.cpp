@@ -149,7 +149,7 @@ std::string mission_toml(const KnownAircraft& aircraft, const Question& question
     const auto add = [&](const char* key, const std::optional<double>& value) {
         if (value) text += fmt::format("{} = {}\n", key, *value);
     };
-    if (cruise_s) text += fmt::format("duration_s = {{ cruise = {:.0f} }}\n", *cruise_s);
+    if (cruise_s) text += fmt::format("duration_s = {{ cruise = {:.0f} }}\n", std::floor(*cruise_s));
     add("payload_kg", question.payload_kg);
     add("takeoff_mass_kg", question.takeoff_mass_kg);
     add("airspeed_m_per_s", mission_airspeed_m_per_s(aircraft, question));

@@ -12,6 +12,7 @@
 #include <regex>
 #include <sstream>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -112,6 +113,9 @@ double parse_number_option(const Option& option, const std::string& text) {
     const auto range = range_text(option);
     const bool lacks_number = !number && !range.starts_with("a number");
     const auto* kind = is_time ? "a time as 90s, 30min or 1.5h, " : "a number without a unit, ";
+    const auto pointed = boost::replace_all_copy(text, ",", ".");
+    if (!number && pointed != text && parse_number(pointed))
+        refuse(option, text, fmt::format("{}, with a decimal point instead of the comma", pointed));
     if (!fits) refuse(option, text, (lacks_number ? kind : "") + range);
     return *number;
 }

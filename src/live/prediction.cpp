@@ -299,7 +299,8 @@ bool advance(const PredictionInput& input, double time_s, std::vector<ConstantLo
 
 void require_interval(const mechanical::MechanicalModel& model, Phase phase, const std::string& file) {
     if (model.phases[phase].level_spread) return;
-    throw InputError({file}, fmt::format("[{}] has no spread between flights", to_string(phase)),
+    throw InputError({file},
+                     fmt::format("the model does not show how the power of flights differs in {}", phase_word(phase)),
                      "fit it to two flights or more: flightwatt fit FLIGHT... -o MODEL.toml");
 }
 

@@ -61,6 +61,7 @@ struct MissionSetup {
     std::optional<double> airspeed_m_per_s = {};  ///< of the cruise, if stated
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
+    bool has_steep_turn = false;                       ///< of the path, which the aircraft may not be able to fly
     std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve
     /// Measured power of each phase in a replay, instead of the power by model and path.
     PerPhase<std::shared_ptr<const path::PiecewisePower>> measured_power = {};

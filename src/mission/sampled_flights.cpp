@@ -159,9 +159,11 @@ std::string describe_briefly(const MonteCarloResult& flights) {
             ? fmt::format("{:.4g} % keep {}, of new flights {:.4g} to {:.4g} %",
                           kept(flights.probability_below_reserve), reserve, kept(missed.high), kept(missed.low))
             : fmt::format("it is unknown how many keep {}, as nothing shows how their power differs", reserve);
-    return fmt::format(
-        "{}: of {} drawn flights {}; 90 of 100 land with {:.1f} to {:.1f} %; --notes: how flights differ",
-        flights.mission, flights.samples, share, q.front(), q.back());
+    const auto band = flights.variability_is_known
+                          ? fmt::format("; 90 of 100 land with {:.1f} to {:.1f} %", q.front(), q.back())
+                          : std::string();
+    return fmt::format("{}: of {} drawn flights {}{}; --notes: how flights differ", flights.mission, flights.samples,
+                       share, band);
 }
 
 std::string describe(const MonteCarloResult& flights) {
@@ -174,12 +176,14 @@ std::string describe(const MonteCarloResult& flights) {
                           flights.probability_below_reserve_95.high, flights.probability_depleted,
                           cut_off > 0.0 ? fmt::format(", cut off or too weak {:.4f} (counts as empty)", cut_off) : "")
             : std::string("with unknown probability: nothing shows how the power of flights differs");
-    auto text = fmt::format(
-        "{}: {} flights drawn: below the reserve of {:.6g} % {}; final state of charge {:.2f} % on average, sd {:.2f}, "
-        "quantiles",
-        flights.mission, flights.samples, flights.reserve_soc_percent, chance, flights.final_soc_mean_percent,
-        flights.final_soc_sd_percent);
-    for (std::size_t i = 0; i < q.size(); ++i) text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
+    auto text = fmt::format("{}: {} flights drawn: below the reserve of {:.6g} % {}", flights.mission, flights.samples,
+                            flights.reserve_soc_percent, chance);
+    if (flights.variability_is_known) {
+        text += fmt::format("; final state of charge {:.2f} % on average, sd {:.2f}, quantiles",
+                            flights.final_soc_mean_percent, flights.final_soc_sd_percent);
+        for (std::size_t i = 0; i < q.size(); ++i)
+            text += fmt::format(" {} %: {:.2f}", shown_quantiles_percent[i], q[i]);
+    }
     return text + "; " + describe(flights.sources);
 }
 

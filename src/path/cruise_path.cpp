@@ -10,6 +10,8 @@
 namespace flightwatt::path {
 namespace {
 
+constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
+
 constexpr double same_power_fraction = 1e-12;
 
 /// A piece is long enough for its power to follow from the energies at its ends.
@@ -136,9 +138,13 @@ std::optional<PathSpeed> best_path_speed(const PlannedPath& plan) {
                      sum_of_terms_w(*model, terms_wh(plan.path))};
 }
 
+bool has_steep_turn(const PathTrajectory& flown) {
+    return std::ranges::any_of(flown.pieces,
+                               [](const auto& piece) { return piece.motion.load_factor > steep_load_factor; });
+}
+
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
-    constexpr double steep_load_factor = 2.0;  // a bank of 60 degrees
-    constexpr double felt_load_factor = 1.1;   // a tenth more lift is a fifth more drag of lift
+    constexpr double felt_load_factor = 1.1;  // a tenth more lift is a fifth more drag of lift
     std::vector<std::string> warnings;
     const auto name_of = [&](const TrajectorySegment& piece) { return plan.path.elements[piece.element].name; };
     const auto is_flown = [&](const TrajectorySegment& piece) {
@@ -156,8 +162,7 @@ std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajec
     if (steepest == flown.pieces.end()) return warnings;
     if (load_of(*steepest) > steep_load_factor) {
         const double bank_deg = std::acos(1.0 / load_of(*steepest)) * units::degree_per_rad;
-        warnings.push_back(
-            fmt::format("{}: such a circle takes a bank of {:.0f} degrees", name_of(*steepest), bank_deg));
+        warnings.push_back(fmt::format("{}: such a turn takes a bank of {:.0f} degrees", name_of(*steepest), bank_deg));
     }
     if (load_of(*steepest) > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
         warnings.push_back(fmt::format(

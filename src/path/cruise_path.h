@@ -77,7 +77,10 @@ struct PathSpeed {
 /// compute_trajectory().
 std::optional<PathSpeed> best_path_speed(const PlannedPath& plan);
 
-/// Returns warnings about the first element outside of the model's flown range, and about a bank above 60 degrees.
+/// Returns whether a turn takes a bank above 60 degrees, which the aircraft may not be able to fly.
+bool has_steep_turn(const PathTrajectory& flown);
+
+/// Returns warnings about the first element outside of the model's flown range, and about a steep turn.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 
 }  // namespace flightwatt::path

@@ -159,6 +159,7 @@ void add_missions(Draft& page) {
     files.erase(std::unique(files.begin(), files.end()), files.end());  // a file may be several flights
     page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(files, ", ")));
     auto simulated = simulate_for_report(missions, page.log.progress("missions"));
+    for (auto& one : simulated) one.is_longest = page.input.are_longest;
     for (const auto i : worst_first(simulated)) page.answers.missions.push_back(std::move(simulated[i]));
     const auto progress = page.log.progress("answers");
     for (const auto& one : page.answers.missions) {

@@ -34,6 +34,7 @@ inline constexpr std::size_t max_battery_flights = 12;
 struct ReportInput {
     std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};
+    bool are_longest = false;                        ///< the missions are the longest flights that keep their reserve
     std::vector<mission::PackFlights> packs = {};    ///< missions over several packs; their flights are in `missions`
     std::optional<std::string> published_file = {};  ///< file of a published model, for Table I
     std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery

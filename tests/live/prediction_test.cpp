@@ -109,7 +109,7 @@ TEST(PredictionBasis, TheCapacityIsAsUncertainAsTheMissionSays) {
 TEST(PredictionBasis, SaysWhyAPublishedModelPredictsNothing) {
     const auto setup = setup_in("missions/paper/phased.toml");
     const auto basis = input_from_mission(setup, "phased.toml");
-    EXPECT_THAT(basis.no_prediction_reason, HasSubstr("has no spread"));
+    EXPECT_THAT(basis.no_prediction_reason, HasSubstr("does not show how the power of flights differs"));
     EXPECT_EQ(basis.cruise_s, setup.duration_s[flight::Phase::cruise]);
     EXPECT_THROW(energy_input_from_mission(setup, "phased.toml"), InputError);
 }

@@ -269,7 +269,7 @@ TEST(Predict, RefusesWhatCannotBePredicted) {
     const auto published = "'" + (test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml").string() + "'";
     const auto without = run(folder, "predict --model " + published + " --at 300 --remaining 9" + sample("01"));
     EXPECT_EQ(without.code, 3);
-    EXPECT_THAT(without.err, HasSubstr("[cruise] has no spread"));
+    EXPECT_THAT(without.err, HasSubstr("does not show how the power of flights differs in cruise"));
     ASSERT_EQ(run(folder, "fit -o model.toml" + samples()).code, 0);
     const auto predict = [&](const std::string& options) {
         return run(folder, "predict --model model.toml " + options + sample("01")).code;

@@ -82,7 +82,7 @@ TEST(CruisePath, WarnsOfWhatNobodyFlew) {
         warnings[0],
         "leg: 18 m/s with a climb of 0 m/s is beyond what the model's flights flew (11 to 16 m/s, climb -2 to 2 m/s): "
         "its power is extrapolated");
-    EXPECT_EQ(warnings[1], "leg: such a circle takes a bank of 62 degrees");
+    EXPECT_EQ(warnings[1], "leg: such a turn takes a bank of 62 degrees");
 }
 
 }  // namespace

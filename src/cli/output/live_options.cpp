@@ -43,7 +43,7 @@ PredictionInput read_mission_basis(const StageCall& call, const BasisArguments& 
 }
 
 PredictionInput read_model_basis(const StageCall& call, const BasisArguments& arguments) {
-    if (!arguments.model) throw UsageError("no model given: expected --model MODEL.toml, or --mission MISSION.toml");
+    if (!arguments.model) throw UsageError("no model given: expected --mission MISSION.toml, or --model MODEL.toml");
     if (!arguments.remaining_s) throw UsageError("no time left given: expected --remaining SECONDS");
     const auto& file = *arguments.model;
     auto model = mechanical::read_predicting_model(file);

@@ -31,7 +31,8 @@ Fields<UncertaintySources> record_fields(const UncertaintySources*) {
 
 Fields<MonteCarloResult> record_fields(const MonteCarloResult*) {
     using R = MonteCarloResult;
-    const auto quantiles = [](const R& flights) {
+    const auto quantiles = [](const R& flights) -> std::optional<Keyed<double>> {
+        if (!flights.variability_is_known) return std::nullopt;
         Keyed<double> all;
         for (std::size_t i = 0; i < shown_quantiles_percent.size(); ++i)
             all.emplace_back(std::to_string(shown_quantiles_percent[i]), flights.final_soc_quantiles_percent[i]);
@@ -53,8 +54,8 @@ Fields<MonteCarloResult> record_fields(const MonteCarloResult*) {
         field("probability_depleted", known(&R::probability_depleted), "the battery is empty before the end"),
         field("probability_battery_failure", known(&R::probability_battery_failure), "empty, cut off or too weak"),
         field("samples", &R::samples, "number of drawn flights"), field("seed", &R::seed, "seed of the random numbers"),
-        field("final_soc_mean_percent", &R::final_soc_mean_percent, "mean over the flights"),
-        field("final_soc_sd_percent", &R::final_soc_sd_percent, "standard deviation over the flights"),
+        field("final_soc_mean_percent", known(&R::final_soc_mean_percent), "mean over the flights"),
+        field("final_soc_sd_percent", known(&R::final_soc_sd_percent), "standard deviation over the flights"),
         field("final_soc_quantiles_percent", quantiles, "quantiles over the flights: 5, 25, 50, 75 and 95 %"),
         embedded(&R::sources));
 }

@@ -173,8 +173,10 @@ ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& c
     const auto all = candidate.value.size();
     if (chosen.empty() && all > 0) {
         const auto bounds = physical_bounds(candidate.name).value();
-        chosen.notes.push_back(fmt::format("{} of {} is mostly beyond {:g} to {:g}: is it in another unit?",
-                                           candidate.name, candidate.source, bounds.low, bounds.high));
+        chosen.notes.push_back(
+            fmt::format("{} of {} is mostly beyond {:g} to {:g}: is it in another unit? "
+                        "--columns MAP.toml states it (key unit)",
+                        candidate.name, candidate.source, bounds.low, bounds.high));
         return chosen;
     }
     if (const auto beyond = all - chosen.value.size(); beyond > 0)

@@ -184,7 +184,11 @@ FrequencyRange admissible_frequencies(std::span<const PhaseSamples> flights, con
 
 PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, const PhaseFitOptions& options) {
     check_options(options);
-    if (flights.empty()) throw NoResultError(fmt::format("no flight has a {} to fit", phase_word(phase)));
+    if (flights.empty())
+        throw NoResultError(
+            fmt::format("no flight has a {0} to fit: add a log with a complete {0}, from "
+                        "take-off to landing",
+                        phase_word(phase)));
     for (const auto& flight : flights) {
         if (flight.tau.size() >= min_samples(options.order)) continue;
         throw NoResultError(

@@ -242,8 +242,9 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
         auto* repeated = repeated_circles(entries);
         if (repeated == nullptr)
             throw NoResultError(
-                "the path has no circles that could be repeated: its cruise is as long as its legs. Add circles at its "
-                "end (docs/missions.md), or ask without [path], with duration_s");
+                "an area is flown once, and has no circles that could be repeated: flightwatt simulate shows the charge "
+                "left at its end; where that misses the reserve, fly it with several packs (new-mission --packs N), or "
+                "with a larger spacing_m");
         repeated->circles = *reading.circles;
     }
     auto path = build_path(entries, defaults);
@@ -288,7 +289,9 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     const auto table = mission_table.optional_table("path");
     if (!table) {
         if (mission_table.has("wind"))
-            throw InputError(mission_table.where("wind"), "[wind] belongs to a [path]", "leave it out, or add one");
+            throw InputError(
+                mission_table.where("wind"), "[wind] belongs to a [path]",
+                "leave it out; flightwatt new-mission --plan PLAN --wind SPEED@DEG makes a mission with both");
         return;
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
@@ -304,8 +307,9 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
                              fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name,
                                          element.airspeed_m_per_s),
                              near_flown_hint(plan.power));
-    for (auto& warning : path_warnings(plan, compute_trajectory(plan.path, plan.wind)))
-        mission.notes.push_back(std::move(warning));
+    const auto flown = compute_trajectory(plan.path, plan.wind);
+    mission.has_steep_turn = has_steep_turn(flown);
+    for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));
 }
 

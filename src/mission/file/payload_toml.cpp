@@ -163,8 +163,9 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     if (assumed.reason.empty())
         throw InputError(where,
                          "the mechanical model does not know the effect of payload: its flights do not determine it",
-                         "add takeoff_mass_kg, the mass of the aircraft as its flights were flown; for wings, whose "
-                         "flights must determine the induced drag too, fit flights that state their payload");
+                         "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
+                         "wings, whose flights must determine the induced drag too, fit flights that state their "
+                         "payload");
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));
     scale_phases(assumed.factor, model);
     widen(std::abs(1.0 - 1.0 / assumed.factor) * assumed_change_sd, model);

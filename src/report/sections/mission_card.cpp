@@ -26,11 +26,16 @@ bool is_cut_off(const mission::MissionSummary& summary) {
     return summary.cut_off_at_s && *summary.cut_off_at_s <= summary.depleted_at_s.value_or(summary.duration_s);
 }
 
-std::string describe_landing(const mission::MissionSummary& summary) {
+std::string describe_end(const mission::MissionSummary& summary) {
     if (!summary.final_soc_percent) return "The battery cannot deliver the power";
     if (is_cut_off(summary)) return "Is cut off " + before_end(summary, *summary.cut_off_at_s);
     if (summary.depleted_at_s) return "Runs empty " + before_end(summary, *summary.depleted_at_s);
     return fmt::format("Lands with {:.1f} % of its charge", *summary.final_soc_percent);
+}
+
+std::string describe_landing(const SimulatedMission& simulated) {
+    return describe_end(simulated.simulation.summary) +
+           (simulated.mission.setup.has_steep_turn ? ", if its turns can be flown" : "");
 }
 
 std::string outcome_words(Outcome outcome, const mission::MissionSummary& summary) {
@@ -38,6 +43,8 @@ std::string outcome_words(Outcome outcome, const mission::MissionSummary& summar
     switch (outcome) {
         case Outcome::keeps:
             return has_reserve ? "keeps reserve" : "lasts";
+        case Outcome::is_steep:
+            return "turns too steep";
         case Outcome::may_miss:
             return has_reserve ? "may miss reserve" : "may run empty";
         case Outcome::misses:
@@ -110,6 +117,11 @@ double planned_cruise_s(const SimulatedMission& simulated) {
 std::string describe_help(const SimulatedMission& simulated, const MissionAssessment& answer, Outcome outcome) {
     const auto& reach = answer.reach_at_95_percent ? answer.reach_at_95_percent : answer.reach;
     const bool is_cruise = reach && reach->unit == ReachUnit::cruise_s;
+    if (simulated.is_longest)
+        return fmt::format(
+            "The longest flight that {} {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
+            answer.reach_at_95_percent ? "in 95 of 100 flights" : "as modelled: how flights differ is unknown");
+    if (outcome == Outcome::is_steep) return "Turns of a larger radius, or a lower airspeed in them";
     const double spare_s = is_cruise ? reach->limit.value - planned_cruise_s(simulated) : 0.0;
     if (outcome == Outcome::keeps)
         return spare_s >= 1.0 ? whole_seconds(std::floor(spare_s)) + " of cruise to spare" : "";
@@ -131,13 +143,14 @@ std::vector<std::string> notes_of(const SimulatedMission& simulated, const Missi
     const auto& summary = simulated.simulation.summary;
     const auto& setup = simulated.mission.setup;
     std::vector<std::string> notes;
+    for (const auto& note : setup.notes) notes.push_back("Warning: " + valid_utf8(note));
     if (auto warning = capacity_warning(setup.battery); !warning.empty())
         notes.push_back("Warning: " + warning + (summary.by_flights ? "; " + describe(*summary.by_flights, 1) : ""));
     if (known_probability_below_reserve(summary)) {
         constexpr double exact = 0.05;
         const auto& missed = summary.samples->probability_below_reserve_95;
         if (missed.high - missed.low > exact)
-            notes.push_back(fmt::format("The few flights of the model allow probabilities from {} to {}",
+            notes.push_back(fmt::format("The number of flights of the model allows probabilities from {} to {}",
                                         probability_text(1.0 - missed.high), probability_text(1.0 - missed.low)));
     }
     if (!answer.no_reach_reason.empty()) notes.push_back("No longest cruise: " + answer.no_reach_reason);
@@ -176,7 +189,7 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
     const auto below = known_probability_below_reserve(summary);
     return {.outcome = outcome,
             .words = outcome_words(outcome, summary),
-            .lead = describe_landing(summary),
+            .lead = describe_landing(simulated),
             .runs = valid_utf8(describe_software(simulated)),
             .landing = landing > 0.0 ? fmt::format("{:.1f} %", landing) : "0 %",
             .probability = below ? probability_text(1.0 - *below) : std::string("unknown"),

@@ -10,7 +10,7 @@
 namespace flightwatt::report {
 namespace {
 
-constexpr std::array outcome_classes{"keeps", "may-miss", "misses", "fails"};
+constexpr std::array outcome_classes{"keeps", "may-miss", "may-miss", "misses", "fails"};
 
 VegaJson phases_of(const mission::MissionSetup& mission) {
     auto phases = VegaJson::array();
@@ -24,7 +24,7 @@ VegaJson phases_of(const mission::MissionSetup& mission) {
 }
 
 VegaJson band_of(const mission::MissionSummary& summary) {
-    if (!summary.samples || summary.samples->bands.empty()) return {};
+    if (!known_probability_below_reserve(summary) || summary.samples->bands.empty()) return {};
     auto band = VegaJson{{"time_s", VegaJson::array()}, {"low", VegaJson::array()}, {"high", VegaJson::array()}};
     for (const auto& row : summary.samples->bands) {
         band["time_s"].push_back(rounded_json(row.time_s, 1));

@@ -136,7 +136,10 @@ Outcome outcome_of(const SimulatedMission& simulated) {
     const auto& summary = simulated.simulation.summary;
     const auto outcome = modelled_outcome(summary);
     const bool keeps_by_flights = !summary.by_flights || summary.by_flights->keeps_reserve;
-    return outcome == Outcome::keeps && !keeps_by_flights ? Outcome::may_miss : outcome;
+    if (simulated.is_longest) return Outcome::keeps;
+    if (outcome != Outcome::keeps) return outcome;
+    if (!keeps_by_flights) return Outcome::may_miss;
+    return simulated.mission.setup.has_steep_turn ? Outcome::is_steep : outcome;
 }
 
 std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions) {

@@ -25,6 +25,7 @@ struct SimulatedMission {
     mission::Simulation simulation;
     std::string title;                                      ///< the mission's name, with " (2)" after an equal one
     std::optional<PlannedSchedule> planned = std::nullopt;  ///< plan of a mission without a schedule
+    bool is_longest = false;  ///< the longest flight that keeps the reserve, as was asked: at the limit by construction
 };
 
 /// Plans the missions without a schedule and simulates all, with 300 points a curve. A curve ends when the battery
@@ -50,6 +51,7 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
 /// The outcomes of a mission, the best first.
 enum class Outcome {
     keeps,     ///< keeps the reserve with a probability of 95 % or more, or as modelled without a known one
+    is_steep,  ///< the same, with turns that the aircraft may not be able to fly
     may_miss,  ///< keeps it as modelled, but with less probability, or not with the capacity by the pack's flights
     misses,    ///< lands below the reserve as modelled
     fails,     ///< runs empty, is cut off, or asks for more power than the battery can deliver

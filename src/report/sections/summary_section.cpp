@@ -22,10 +22,12 @@ struct OutcomeLook {
 };
 
 /// In the order of Outcome.
-constexpr std::array<OutcomeLook, 4> looks{{{"keeps", "lands as planned", "land as planned"},
-                                            {"may-miss", "may miss the reserve", "may miss the reserve"},
-                                            {"misses", "lands below the reserve", "land below the reserve"},
-                                            {"fails", "does not reach its end", "do not reach their end"}}};
+constexpr std::array<OutcomeLook, 5> looks{
+    {{"keeps", "lands as planned", "land as planned"},
+     {"may-miss", "flies turns that it may not be able to", "fly turns that they may not be able to"},
+     {"may-miss", "may miss the reserve", "may miss the reserve"},
+     {"misses", "lands below the reserve", "land below the reserve"},
+     {"fails", "does not reach its end", "do not reach their end"}}};
 
 const OutcomeLook& look_of(Outcome outcome) { return looks.at(static_cast<std::size_t>(outcome)); }
 
@@ -64,9 +66,10 @@ std::string headline_of(const RankedCards& ranked, std::span<const ReportFlight>
     }
     if (cards.size() == 1) return fmt::format("{}: {}", ranked.missions.front().title, cards.front().lead);
     if (cards.front().outcome == Outcome::keeps)
-        return fmt::format("All {} missions land as planned", number_word(cards.size()));
+        return fmt::format("{} missions land as planned",
+                           cards.size() == 2 ? "Both" : "All " + number_word(cards.size()));
     std::vector<std::string> parts;
-    for (const auto outcome : {Outcome::fails, Outcome::misses, Outcome::may_miss}) {
+    for (const auto outcome : {Outcome::fails, Outcome::misses, Outcome::may_miss, Outcome::is_steep}) {
         const auto is_this = [&](const MissionCard& card) { return card.outcome == outcome; };
         const auto count = static_cast<std::size_t>(std::ranges::count_if(cards, is_this));
         if (count == 0 || (outcome == Outcome::may_miss && !parts.empty())) continue;
@@ -208,7 +211,7 @@ std::optional<Section> notes_section(const PageSummary& answers) {
 
 Section curves_section(std::span<const SimulatedMission> missions) {
     return {
-        "curves", fmt::format("All {} missions", number_word(missions.size())),
+        "curves", missions.size() == 2 ? "Both missions" : fmt::format("All {} missions", number_word(missions.size())),
         "<p class=\"soft\">The colour of a line is its outcome: <b class=\"fails\">does not reach its end</b>, <b "
         "class=\"misses\">lands below or may miss the reserve</b>, <b class=\"keeps\">keeps the reserve in 95 of 100 "
         "flights</b>.</p>\n<div class=\"card\"><div class=\"drawn\" data-draw=\"curves\"></div></div>\n"};

@@ -97,6 +97,9 @@ TEST(MissionJson, HoldsTheChancesOfSampledFlights) {
     EXPECT_EQ(json["probability_below_reserve"], 0.25);
     EXPECT_EQ(json["varied"][0], "cruise power");
     EXPECT_EQ(json["final_soc_quantiles_percent"].size(), mission::shown_quantiles_percent.size());
+    summary.samples->variability_is_known = false;
+    for (const auto* key : {"final_soc_mean_percent", "final_soc_sd_percent", "final_soc_quantiles_percent"})
+        EXPECT_TRUE(record_json(summary)[key].is_null()) << key;
 }
 
 TEST(PlanJson, HoldsUtilityAndProvenBound) {

@@ -51,7 +51,7 @@ TEST(SimulateForReport, EndsTheCurveWhereTheBatteryCannotDeliver) {
     auto weak = test::paper_mission("phased");
     weak.setup.battery.resistance_ohm = 1.0;
     const auto missions = simulate_for_report({weak});
-    const auto& [mission, simulation, title, planned] = missions.front();
+    const auto& [mission, simulation, title, planned, is_longest] = missions.front();
     ASSERT_TRUE(simulation.summary.undeliverable);
     EXPECT_LE(simulation.curve.rows.back().time_s, simulation.summary.undeliverable->time_s);
     EXPECT_FALSE(planned) << "it gave its schedule";
@@ -139,6 +139,25 @@ TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
     EXPECT_EQ(json["with_capacity_of_flights"]["keeps_reserve"], false);
     const auto computing = flown("computing-only");
     EXPECT_FALSE(record_json(MissionOutput{&computing, &answer}).contains("with_capacity_of_flights"));
+}
+
+TEST(MissionAnswer, QualifiesALandingAfterTurnsThatAreTooSteep) {
+    auto steep = test::paper_mission("computing-only");
+    steep.setup.has_steep_turn = true;
+    steep.setup.notes = {"survey: such a turn takes a bank of 78 degrees"};
+    const auto simulated = simulate_for_report({steep}).front();
+    EXPECT_EQ(outcome_of(simulated), Outcome::is_steep);
+    const auto lines = card_lines(simulated, {});
+    EXPECT_THAT(lines.front(), testing::MatchesRegex("Turns too steep: Lands with .*, if its turns can be flown"));
+    EXPECT_THAT(lines, Contains("Warning: survey: such a turn takes a bank of 78 degrees"));
+}
+
+TEST(MissionAnswer, StatesThatTheLongestFlightIsAtTheLimit) {
+    auto simulated = simulate_for_report({test::paper_mission("invariant-32fps-448bit")}).front();
+    simulated.is_longest = true;
+    EXPECT_EQ(outcome_of(simulated), Outcome::keeps);
+    EXPECT_EQ(mission_card(simulated, {}).help,
+              "The longest flight that the battery lasts as modelled: how flights differ is unknown");
 }
 
 TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {

@@ -88,6 +88,14 @@ TEST(SummarySection, HasAHeadlineACardAndARowAMissionAndAllCurves) {
     EXPECT_TRUE(data[0]["landing"].is_null()) << "it runs empty";
 }
 
+TEST(SummarySection, HasNoMissionAsPlannedWithTurnsThatAreTooSteep) {
+    auto answers = answers_of({"computing-only", "computing-only"});
+    EXPECT_THAT(summary_section(answers, {}).html, HasSubstr(">Both missions land as planned</h1>"));
+    answers.missions.front().mission.setup.has_steep_turn = true;
+    EXPECT_THAT(summary_section(answers, {}).html,
+                HasSubstr(">One of two missions flies turns that it may not be able to</h1>"));
+}
+
 TEST(PageTitle, HasAircraftDatesAndCounts) {
     const auto flight = read_sample();
     EXPECT_EQ(page_title(std::vector{flight, flight}, 2),
