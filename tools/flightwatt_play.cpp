@@ -2,7 +2,6 @@
 
 #include "base/signal_watch.h"
 #include "cli/stage.h"
-#include "live/mavlink_playback.h"
 #include "live/playback.h"
 #include "stages.h"
 #include "telemetry/binary_log.h"

@@ -2,8 +2,12 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "flight/load_flight.h"
+#include "flight/select.h"
+#include "flight/telemetry_series.h"
 #include "live/sources/datagrams.h"
-#include "live/sources/player.h"
+#include "live/sources/flight_packets.h"
+#include "live/sources/message_readers.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
@@ -35,6 +39,56 @@ bool wait_for(Clock::time_point then, const std::function<bool()>& stop) {
     }
 }
 
+/// Sends the messages of a log to a target when they are due.
+class Player final : public MessageSink {
+  public:
+    Player(double speed, const PlaybackTarget& target, const std::function<bool()>& stop)
+        : speed_(speed), target_(target), stop_(stop) {}
+
+    bool is_stopped() const { return report_.stopped; }
+
+    void push(IncomingMessage message) override {
+        if (!message.time_s) return count("no time", 1);
+        if (report_.stopped) return;
+        const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
+        if (step_s > max_played_gap_s) ++report_.shortened_gaps;
+        report_.log_s += std::min(step_s, max_played_gap_s);
+        last_s_ = message.time_s;
+        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
+        report_.stopped = !wait_for(due, stop_);
+        if (report_.stopped) return;
+        report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
+        const auto reason = target_(message);
+        ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
+    }
+
+    void count(std::string_view reason, std::size_t times) override {
+        if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
+    }
+
+    PlaybackReport end() {
+        report_.played_s = Seconds(Clock::now() - begin_).count();
+        return std::move(report_);
+    }
+
+  private:
+    double speed_;
+    const PlaybackTarget& target_;
+    const std::function<bool()>& stop_;
+    PlaybackReport report_;
+    std::optional<double> last_s_;  ///< of the message before, on the log's clock
+    Clock::time_point begin_ = Clock::now();
+};
+
+/// In chunks, so that a stopped player ends soon.
+template <typename Reader>
+void play_bytes(std::string_view bytes, Reader& reader, const Player& player) {
+    constexpr std::size_t chunk = 4096;
+    for (auto rest = bytes; !rest.empty() && !player.is_stopped(); rest.remove_prefix(std::min(chunk, rest.size())))
+        reader.push(rest.substr(0, chunk));
+    if (!player.is_stopped()) reader.flush();
+}
+
 /// Throws InputError where the lengths of the messages differ from their definitions.
 void play_binary(const telemetry::BinaryLog& log, Player& player) {
     LinkReader reader(player, std::make_shared<const telemetry::MessageDictionary>(*log.messages), log.framing,
@@ -63,30 +117,6 @@ class UdpTarget {
 };
 
 }  // namespace
-
-void Player::push(IncomingMessage message) {
-    if (!message.time_s) return count("no time", 1);
-    if (report_.stopped) return;
-    const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
-    if (step_s > max_played_gap_s) ++report_.shortened_gaps;
-    report_.log_s += std::min(step_s, max_played_gap_s);
-    last_s_ = message.time_s;
-    const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
-    report_.stopped = !wait_for(due, stop_);
-    if (report_.stopped) return;
-    report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
-    const auto reason = target_(message);
-    ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
-}
-
-void Player::count(std::string_view reason, std::size_t times) {
-    if (times > 0 && !report_.stopped) report_.left_out[std::string(reason)] += times;
-}
-
-PlaybackReport Player::end() {
-    report_.played_s = Seconds(Clock::now() - begin_).count();
-    return std::move(report_);
-}
 
 std::string data_line(const IncomingMessage& message) {
     const double time_s = message.time_s.value();
@@ -120,6 +150,27 @@ PlaybackReport play(const std::filesystem::path& log, double speed, const Playba
         TextReader reader(player);
         play_bytes(text, reader, player);
     }
+    return player.end();
+}
+
+PlaybackTarget open_mavlink_target(std::string_view to) {
+    const auto target = std::make_shared<Datagrams>(to);
+    return [target](const IncomingMessage& message) { return target->send(message.packet); };
+}
+
+PlaybackReport play_as_mavlink(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
+                               const std::function<bool()>& stop, const std::optional<std::string>& aircraft) {
+    const flight::FlightFile file(log);
+    Player player(speed, target, stop);
+    if (file.autopilot() == telemetry::AutopilotFormat::tlog) {
+        MavlinkReader reader(player, std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()),
+                             true);
+        play_bytes(file.text(), reader, player);
+        return player.end();
+    }
+    const auto series = choose_aircraft(read_candidates(file, aircraft));
+    for (auto& message : flight_packets(select_tracks(series)))
+        if (!player.is_stopped()) player.push(std::move(message));
     return player.end();
 }
 

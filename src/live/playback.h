@@ -47,4 +47,13 @@ PlaybackReport play(const std::filesystem::path& log, double speed, const Playba
                     const std::function<bool()>& stop,
                     const std::optional<telemetry::MessageDictionary>& definitions = {});
 
+/// Returns a target that sends MAVLink's packets of messages, one in each datagram, to an address: "127.0.0.1:14550".
+/// Throws UsageError for another text.
+PlaybackTarget open_mavlink_target(std::string_view to);
+
+/// Plays a log of any kind as MAVLink, as play() does: the packets of a .tlog; of other logs those that the aircraft would
+/// send, by its tracks. Of several aircraft `aircraft` names one. Throws InputError for a log that cannot be read.
+PlaybackReport play_as_mavlink(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
+                               const std::function<bool()>& stop, const std::optional<std::string>& aircraft = {});
+
 }  // namespace flightwatt::live

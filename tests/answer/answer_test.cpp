@@ -92,10 +92,10 @@ TEST_F(AnswerTest, NoWayBackAgainstAWindAsFastAsTheAircraft) {
 TEST_F(AnswerTest, NoDistanceOfAHover) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.model.is_rotorcraft = true;
-    aircraft.flights.front().ground_speed_m_per_s = 1.9;
+    aircraft.flights.front().ground_speed_m_per_s = 2.9;
     EXPECT_TRUE(answer_endurance(aircraft, {}).is_hover);
     EXPECT_FALSE(answer_endurance(aircraft, {}).distance_m.value);
-    aircraft.flights.front().ground_speed_m_per_s = 2.1;
+    aircraft.flights.front().ground_speed_m_per_s = 3.1;
     EXPECT_FALSE(answer_endurance(aircraft, {}).is_hover);
     EXPECT_TRUE(answer_endurance(aircraft, {}).distance_m.value);
 }
@@ -111,10 +111,13 @@ TEST_F(AnswerTest, ARotorcraftReturnsAgainstTheWindAtTheGroundSpeedItFlew) {
     aircraft.model.physical.emplace().airspeed_m_per_s = {0.0, 10.0};
     EXPECT_EQ(home({.wind_m_per_s = 3.0}).value, std::optional(8.0));
     EXPECT_EQ(home({.wind_m_per_s = 3.0}).basis, "assumed: 5.0 m/s over ground as in the flights");
-    EXPECT_THAT(home({.wind_m_per_s = 8.0}).basis, HasSubstr("extrapolated"));
+    EXPECT_THAT(home({.wind_m_per_s = 6.0}).basis, HasSubstr("extrapolated"));
+    EXPECT_THAT(home({.wind_m_per_s = 8.0}).unknown,
+                HasSubstr("13.0 m/s of airspeed are beyond what its flights show"));
     EXPECT_EQ(home({.airspeed_m_per_s = 9.0, .wind_m_per_s = 3.0}).value, std::optional(9.0));
     aircraft.flights.front().ground_speed_m_per_s.reset();
-    EXPECT_THAT(home({.wind_m_per_s = 3.0}).unknown, HasSubstr("a flight with GPS shows it"));
+    EXPECT_EQ(home({.wind_m_per_s = 3.0}).value, std::optional(8.0));
+    EXPECT_THAT(home({}).basis, HasSubstr("assumed, as slow as autopilots return"));
 }
 
 TEST_F(AnswerTest, APayloadThatTheFlightsDoNotShowIsUnknownWithTheRemedy) {

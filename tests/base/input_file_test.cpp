@@ -135,7 +135,7 @@ TEST(FileKinds, OneTakenForAnotherIsNamed) {
               "f: is a mechanical model, not a battery; identify one with `flightwatt battery`");
     EXPECT_EQ(
         refused(mission, FileKind::log),
-        "f: is a mission, not a log; expected a .data log, .LOG or .tlm of Paparazzi, a .bin or .ulg, or a CSV of a flight");
+        "f: is a mission, not a log; expected a .data log, .LOG or .tlm of Paparazzi, a .bin, .ulg or .tlog, or a CSV of a flight");
     EXPECT_EQ(refused(pack, FileKind::mission),
               "f: is a battery, not a mission; write one with `flightwatt new-mission`");
     EXPECT_EQ(refused(" \n", FileKind::mission),
@@ -152,7 +152,6 @@ TEST(FileKinds, AreKnownByTheirContent) {
     const std::vector<std::pair<std::string, std::string>> kinds{
         {"#ROSBAG V2.0\n", "a bag of ROS"},
         {"%PDF-1.7\n", "a PDF document"},
-        {std::string("\0\x05\x8E\x8A\x93\xE5\xC0\x00\xFE\x09", 10), "a capture of MAVLink (.tlog)"},
         {"ULog\x01\x12\x35", "a log"},
         {"FMT, 128, 89, FMT, BBnNZ", "a log"},
         {"garbage\n335.149 20 ENERGY 69 11.7 3.1\n", "a log"},

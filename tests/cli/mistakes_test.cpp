@@ -50,7 +50,7 @@ flightwatt simulate mission.toml -o soc.csv && flightwatt init home || exit
 head -c 60000 flights/opterra_synthetic_01.data > cut.data; cp flights/opterra_synthetic_01.log cut.log
 : > empty.data; : > empty.toml; echo hello > words.txt; echo '<!DOCTYPE html><html></html>' > page.html
 echo '{{ "fileType": "Plan", "mission": {{}} }}' > ground.plan; echo 'QGC WPL 110' > waypoints.txt
-echo '<kml></kml>' > field.kml; printf '\0\005\1\2\3\4\5\6\376' > capture.tlog
+echo '<kml></kml>' > field.kml
 printf '\243\225\200\200\131' > ardupilot.bin
 printf '[sampler]\ncommand = ["echo", "5"]\n[components.detector]\ncommand = ["./detect"]\n' > specification.toml)",
         test::shell_quoted(test::source_dir()));

@@ -7,6 +7,7 @@
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
+#include "live/sources/flight_packets.h"
 #include "live/sources/message_readers.h"
 
 #include <algorithm>
@@ -91,6 +92,19 @@ TEST(LiveFlightByMavlink, HoldsItsEnergyWithLossLatenessAndTwoRadios) {
     EXPECT_NEAR(state.energy_wh.value(), energy_wh_of_log(log), 0.02 * energy_wh_of_log(log));
     EXPECT_GT(received.counts["messages lost on the link"], 500U);
     EXPECT_EQ(state.sortie, 1U);
+}
+
+// A log of any kind that is played as MAVLink is the same flight.
+TEST(LiveFlightByMavlink, HearsAFlightThatIsPlayed) {
+    const auto log = test::tlog_of_flight();
+    const auto flown = flight::load_flight(test::write_text(test::scratch_dir() / "flown.tlog", log));
+    CollectedMessages received;
+    MavlinkReader reader(received, vehicles(), true);
+    for (const auto& message : flight_packets(flown.data))
+        reader.push(telemetry::tlog_entry(1.78e9 + *message.time_s, message.packet));
+    const auto state = state_after(received.messages);
+    EXPECT_TRUE(state.landed);
+    EXPECT_NEAR(state.energy_wh.value(), energy_wh_of_log(log), 0.01 * energy_wh_of_log(log));
 }
 
 TEST(LiveFlightByMavlink, FollowsTheVehicleThatItWasTold) {

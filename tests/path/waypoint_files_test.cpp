@@ -88,7 +88,7 @@ TEST(WaypointFiles, RefuseOtherJson) {
 TEST(WaypointFiles, OfAutopilotsAreRecognisedByTheirContent) {
     const auto folder = test::scratch_dir();
     std::ofstream(folder / "a.txt") << "QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 100 1\n1 0 3 16 0 0 0 0 47.01 8 60 1\n";
-    EXPECT_EQ(read_waypoints(folder / "a.txt", {}).entries.size(), 1U);
+    EXPECT_EQ(read_waypoints(folder / "a.txt", {}).entries.size(), 2U) << "from home";
     std::ofstream(folder / "a.plan") << R"({"fileType": "Plan", "version": 3})";
     EXPECT_EQ(rejected([&] { read_waypoints(folder / "a.plan", {}); }, folder),
               "a.plan: the plan has version 3; expected version 1");

@@ -291,7 +291,7 @@ TEST(PowerRules, OfPhasesThatDifferFromTheCounter) {
     };
     EXPECT_THAT(differs(0.0, 1.0, 1.11), Contains(HasSubstr("cruise at 100 s: ")));
     EXPECT_THAT(differs(0.0, 1.0, 1.09), IsEmpty());
-    EXPECT_THAT(differs(70.0, 1.5, 1.0), Contains(HasSubstr("takeoff at 100 s: "))) << "2.3 % of the flight";
+    EXPECT_THAT(differs(70.0, 1.5, 1.0), Contains(HasSubstr("take-off at 100 s: "))) << "2.3 % of the flight";
     EXPECT_THAT(differs(50.0, 1.5, 1.0), IsEmpty()) << "1.7 % of the flight";
     EXPECT_THAT(differs(0.0, 1.0, 1.2, 0.225), testing::SizeIs(1)) << "0.46 Wh more than 10 %";
     EXPECT_THAT(differs(0.0, 1.0, 1.2, 0.238), IsEmpty());

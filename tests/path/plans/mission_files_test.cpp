@@ -48,12 +48,13 @@ TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
         qgc(item(178, 2, "0, 14, -1, 0, 0, 0, 0") + "," + item(18, 3, "3, 0, -70, 1, 47.001, 8.0, 60") + "," +
             item(19, 3, "60, 0, 0, 1, 47.002, 8.0, 60") + "," + item(17, 3, "0, 0, 80, 1, 47.002, 8.0, 60")),
         "q.plan", {.radius_m = 50.0, .airspeed_m_per_s = 12.0});
-    EXPECT_EQ(plan.entries[0].circles, std::optional(3.0));
-    EXPECT_EQ(plan.entries[0].radius_m, std::optional(70.0));
-    EXPECT_FALSE(plan.entries[0].to_right);
-    EXPECT_EQ(plan.entries[0].airspeed_m_per_s, std::optional(14.0));
-    EXPECT_NEAR(*plan.entries[1].circles, 60.0 * 14.0 / 314.159, 1e-3);
-    EXPECT_EQ(plan.entries[2].circles, std::optional(1.0));
+    EXPECT_DOUBLE_EQ(plan.entries[0].geographic->latitude_deg, 47.0) << "home";
+    EXPECT_EQ(plan.entries[1].circles, std::optional(3.0));
+    EXPECT_EQ(plan.entries[1].radius_m, std::optional(70.0));
+    EXPECT_FALSE(plan.entries[1].to_right);
+    EXPECT_EQ(plan.entries[1].airspeed_m_per_s, std::optional(14.0));
+    EXPECT_NEAR(*plan.entries[2].circles, 60.0 * 14.0 / 314.159, 1e-3);
+    EXPECT_EQ(plan.entries[3].circles, std::optional(1.0));
     EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 4: the circle has no end: it is flown once"});
 }
 
@@ -96,8 +97,8 @@ TEST(MissionFiles, OfWaypointFilesHaveTheirLine) {
                       "1\t0\t3\t16\t0\t0\t0\t0\t47.001\t8\t60\t1\n"
                       "2\t0\t0\t16\t0\t0\t0\t0\t47.002\t8\t170\t1\n3\t0\t3\t177\t1\t-1\t0\t0\t0\t0\t0\t1\n",
                   "w.waypoints", {});
-    ASSERT_EQ(plan.entries.size(), 2U);
-    EXPECT_EQ(plan.entries[1].altitude_m, std::optional(70.0));
+    ASSERT_EQ(plan.entries.size(), 3U) << "from home";
+    EXPECT_EQ(plan.entries[2].altitude_m, std::optional(70.0));
     EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 3 (line 5): the jump to item 1 is not flown"});
     const auto refusal = [](const std::string& text) { return rejected([&] { parse_wpl(text, "w", {}); }); };
     EXPECT_EQ(refusal("east_m\n"), "w:1: begins with 'east_m'; expected \"QGC WPL 110\"");

@@ -1,19 +1,12 @@
-#include "live/mavlink_playback.h"
+#include "live/sources/flight_packets.h"
 
 #include "base/error.h"
 #include "base/units.h"
-#include "flight/load_flight.h"
-#include "flight/select.h"
-#include "flight/telemetry_series.h"
-#include "live/sources/datagrams.h"
-#include "live/sources/message_readers.h"
-#include "live/sources/player.h"
 #include "telemetry/mavlink_sender.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace flightwatt::live {
 namespace {
@@ -108,7 +101,7 @@ class AircraftSender {
 
 }  // namespace
 
-std::vector<IncomingMessage> mavlink_messages_of(const flight::FlightData& data) {
+std::vector<IncomingMessage> flight_packets(const flight::FlightData& data) {
     if (data.power_w.empty() || data.voltage_v.empty())
         throw InputError({data.file}, "has no measured power with its voltage", "MAVLink states voltage and current");
     AircraftSender sender(data);
@@ -128,27 +121,6 @@ std::vector<IncomingMessage> mavlink_messages_of(const flight::FlightData& data)
             sender.send_position(time_s, altitude.value[a++]);
     }
     return sender.take();
-}
-
-PlaybackTarget open_mavlink_target(std::string_view to) {
-    const auto target = std::make_shared<Datagrams>(to);
-    return [target](const IncomingMessage& message) { return target->send(message.packet); };
-}
-
-PlaybackReport play_as_mavlink(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
-                               const std::function<bool()>& stop, const std::optional<std::string>& aircraft) {
-    const flight::FlightFile file(log);
-    Player player(speed, target, stop);
-    if (file.autopilot() == telemetry::AutopilotFormat::tlog) {
-        MavlinkReader reader(player, std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()),
-                             true);
-        play_bytes(file.text(), reader, player);
-        return player.end();
-    }
-    const auto series = choose_aircraft(read_candidates(file, aircraft));
-    for (auto& message : mavlink_messages_of(select_tracks(series)))
-        if (!player.is_stopped()) player.push(std::move(message));
-    return player.end();
 }
 
 }  // namespace flightwatt::live

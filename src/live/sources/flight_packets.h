@@ -1,0 +1,15 @@
+#pragma once
+
+#include "flight/flight_data.h"
+#include "live/sources.h"
+
+#include <vector>
+
+namespace flightwatt::live {
+
+/// Returns the packets of MAVLink that an aircraft with these tracks would send, by rising time: a heartbeat and SYS_STATUS
+/// once a second, BATTERY_STATUS at each power, GLOBAL_POSITION_INT and VFR_HUD at each altitude, with the values that are
+/// known then. Throws InputError without measured power and voltage.
+std::vector<IncomingMessage> flight_packets(const flight::FlightData& data);
+
+}  // namespace flightwatt::live
