@@ -34,8 +34,9 @@ const std::vector<StageGroup>& stage_groups() {
         {"Logs",
          {{"init", "a folder for an aircraft, with the four commands from logs to a report", stages::init_stage},
           {"convert", "a binary log of an SD card or a link to text", stages::convert_stage},
-          {"batch", "parse, segment and fit every log of a folder (.data, .bin, .ulg, CSV)", stages::batch_stage},
-          {"parse", "a log (.data, .bin, .ulg, CSV) to a table of its samples (CSV)", stages::parse_stage},
+          {"batch", "parse, segment and fit every log of a folder (.data, .bin, .ulg, .tlog, CSV)",
+           stages::batch_stage},
+          {"parse", "a log (.data, .bin, .ulg, .tlog, CSV) to a table of its samples (CSV)", stages::parse_stage},
           {"segment", "take-off, cruise and landing of every sortie in a log", stages::segment_stage},
           {"merge", "join the folders of several batches into one", stages::merge_stage},
           {"trends", "ageing of aircraft and pack: energy, power and resistance over the dates of flights",
@@ -75,7 +76,7 @@ std::vector<Stage> all_stages() {
 
 /// The way from logs to a first answer, before the stages.
 std::string start_text() {
-    return "\nTo begin, with the logs of an aircraft (.bin, .ulg, .data with its .log, CSV):\n"
+    return "\nTo begin, with the logs of an aircraft (.bin, .ulg, .tlog, .data with its .log, CSV):\n"
            "  flightwatt LOGS --capacity 5   how long and how far it flies on a pack of 5 Ah, and a page\n"
            "  flightwatt init my-drone       a folder for them, with the commands up to missions\n";
 }

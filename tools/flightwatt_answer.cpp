@@ -341,8 +341,8 @@ int flightwatt::stages::answer_stage(int argc, char** argv) {
 the state of its pack, how well new flights are predicted, and a page with all of it. Each answer states what it rests
 on; where something is unknown, it states which flight would show it. `flightwatt LOG...` is the same.
 
-Logs are ArduPilot's (.bin, .log), PX4's (.ulg), Paparazzi's (.data with its .log) and CSV. Results are in the folder
-of --output (flightwatt-out), and logs that have not changed are not read again. Of several aircraft it answers for the
+Logs are ArduPilot's (.bin, .log), PX4's (.ulg), MAVLink (.tlog), Paparazzi's (.data with its .log) and CSV. Results are in the
+folder of --output (flightwatt-out), and logs that have not changed are not read again. Of several aircraft it answers for the
 one with the most flights; --each answers for each of them. --require tests a flight as long as those of the logs, with
 the payload, wind and airspeed that are asked for.)"};
     stage.examples = {"flightwatt flight.bin --capacity 5.2", "flightwatt logs --payload 0.5 --wind 6",

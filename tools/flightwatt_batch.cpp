@@ -189,7 +189,7 @@ int run_over_logs(const cli::StageCall& call, const cli::BatchArguments& argumen
 int flightwatt::stages::batch_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "batch", "LOG|FOLDER... -o OUT",
-        R"(Parses and segments every log (.data, .bin, .ulg, CSV; folders are searched to the bottom) into OUT/flights, several at a
+        R"(Parses and segments every log (.data, .bin, .ulg, .tlog, CSV; folders are searched to the bottom) into OUT/flights, several at a
 time, and fits them: OUT/model.toml, OUT/table1.txt, .csv, .md, and OUT/flights.csv, a row a flight and
 phase. Logs whose results are up to date are not done again. A log that cannot be used is reported and the
 others are processed; the exit code is then 3. Flights of earlier runs into OUT stay, also those whose log is missing;

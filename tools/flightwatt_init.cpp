@@ -33,7 +33,7 @@ constexpr std::array<const char*, 3> folders{"logs", "fits", "missions"};
 std::string list_of_commands(const std::optional<double>& capacity_ah) {
     return fmt::format(
         R"(# From logs to a report in four commands. `make` runs those that something newer asks for; they may be typed as well.
-# Put the logs of your flights into logs/ first: .bin, .ulg, .data with its .log, CSV.
+# Put the logs of your flights into logs/ first: .bin, .ulg, .tlog, .data with its .log, CSV.
 
 report.html: missions/first.csv
 	flightwatt report fits missions/first.toml -o report.html
@@ -68,7 +68,7 @@ int make_folder(const cli::StageCall& call, const std::optional<double>& capacit
         cli::print_json(call, InitOutput{root, {folders.begin(), folders.end()}, list});
     } else {
         cli::print(fmt::format(
-            "{0}/logs      put each flight's log here: .bin, .ulg, CSV, or .data with its .log\n"
+            "{0}/logs      put each flight's log here: .bin, .ulg, .tlog, CSV, or .data with its .log\n"
             "{0}/fits      models, and what was found of each flight\n"
             "{0}/missions  what is to be flown\n"
             "{1}  the four commands from logs to report.html{2}\n",

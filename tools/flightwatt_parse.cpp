@@ -83,8 +83,8 @@ int parse(const cli::StageCall& call, flight::LoadOptions options) {
 int flightwatt::stages::parse_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "parse", "LOG",
-        R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card, a .bin of ArduPilot, a .ulg of PX4
-(also .gz, .bz2, .xz, .zst), or a CSV with --columns, and
+        R"(Reads a Paparazzi log with its .log, .data or the .LOG of an SD card, a .bin of ArduPilot, a .ulg of PX4,
+a .tlog of a ground station (also .gz, .bz2, .xz, .zst), or a CSV with --columns, and
 writes its data on the flight as a series file (CSV): power, voltage, current, charge, energy, throttle,
 altitude, position, speeds, wind, attitude, mode and block, each at the times when it was logged.
 Any stage reads the series file as it reads the log, with the same results.)"};

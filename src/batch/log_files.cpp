@@ -183,8 +183,9 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
             const auto cause = path.empty() || !error || error == std::errc::no_such_file_or_directory
                                    ? "does not exist"
                                    : error.message();
-            throw InputError({path.empty() ? "''" : path}, cause,
-                             "expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+            throw InputError(
+                {path.empty() ? "''" : path}, cause,
+                "expected a .data log, a .LOG or .tlm of an SD card, a .bin, .ulg or .tlog, or a folder of them");
         }
         const auto tables = columns ? std::nullopt : telemetry::find_ulog_tables(path);
         logs.push_back({tables ? tables->string() : path});
@@ -195,7 +196,7 @@ std::vector<LogFile> find_logs(const std::vector<std::string>& inputs, const std
     if (logs.empty()) {
         throw InputError(
             {}, "no log in " + short_list(inputs.empty() ? listed : inputs),
-            "expected *.data, *.LOG, *.tlm, *.bin or *.ulg, also .gz, .bz2, .xz or .zst, or flights as *.csv");
+            "expected *.data, *.LOG, *.tlm, *.bin, *.ulg or *.tlog, also .gz, .bz2, .xz or .zst, or flights as *.csv");
     }
     UniqueNames names;
     for (auto& log : logs) log.flight = names.assign(log.path);

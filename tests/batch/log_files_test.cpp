@@ -144,17 +144,17 @@ TEST(FindLogs, RefusesWhatIsNotThere) {
                   },
                   folder.parent_path()),
               ": no log in FindLogs.RefusesWhatIsNotThere, FindLogs.RefusesWhatIsNotThere; expected "
-              "*.data, *.LOG, *.tlm, *.bin or *.ulg, also .gz, .bz2, .xz or .zst, or flights as *.csv");
+              "*.data, *.LOG, *.tlm, *.bin, *.ulg or *.tlog, also .gz, .bz2, .xz or .zst, or flights as *.csv");
     EXPECT_EQ(
         rejected([&] { find_logs({(folder / "b.data").string()}); }, folder),
-        "b.data: does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+        "b.data: does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin, .ulg or .tlog, or a folder of them");
     EXPECT_EQ(
         rejected([&] { find_logs({(folder / std::string(300, 'x')).string()}); }, folder),
         std::string(300, 'x') +
-            ": File name too long; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+            ": File name too long; expected a .data log, a .LOG or .tlm of an SD card, a .bin, .ulg or .tlog, or a folder of them");
     EXPECT_EQ(
         rejected([&] { find_logs({""}); }),
-        "'': does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin or .ulg, or a folder of them");
+        "'': does not exist; expected a .data log, a .LOG or .tlm of an SD card, a .bin, .ulg or .tlog, or a folder of them");
 }
 
 TEST(FindLogs, TakesTheReasonWhyAFolderBelowIsNotFitted) {

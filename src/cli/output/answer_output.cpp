@@ -157,7 +157,7 @@ std::string pack_line(const PackAnswer& pack) {
     const auto& air_c = pack.air_temperature_c;
     return text + (air_c ? fmt::format("; in air of {:.0f} to {:.0f} degC, other temperatures unknown", air_c->low,
                                        air_c->high)
-                         : std::string("; temperature unknown: no log states it"));
+                         : std::string("; temperature unknown: not read from the logs"));
 }
 
 /// The health of each pack; empty where no flight shows one.

@@ -3,6 +3,7 @@
 #include "flight/families/derived_tracks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -168,6 +169,16 @@ double correct_week_rollover(double utc_s) {
 }
 
 double product(const std::vector<double>& values) { return values[0] * values[1]; }
+
+std::string firmware_of_type(double mav_type) {
+    constexpr std::array rotorcraft{2.0, 3.0, 4.0, 13.0, 14.0, 15.0, 29.0, 35.0, 43.0};
+    constexpr double fixed_wing = 1.0;
+    constexpr double ground_rover = 10.0;
+    constexpr double boat = 11.0;
+    if (std::ranges::find(rotorcraft, mav_type) != rotorcraft.end()) return "rotorcraft";
+    if (mav_type == fixed_wing) return "fixedwing";
+    return mav_type == ground_rover || mav_type == boat ? "rover" : "";
+}
 
 double speed_of(const std::vector<double>& north_east) { return std::hypot(north_east[0], north_east[1]); }
 

@@ -61,6 +61,9 @@ struct LogFamily {
 /// Returns the product of two values, such as voltage and current.
 double product(const std::vector<double>& values);
 
+/// Returns the kind of vehicle by MAVLink's number of its type, as FlightInfo::firmware; empty for others, as VTOLs.
+std::string firmware_of_type(double mav_type);
+
 /// Returns the speed of a velocity to the north and east.
 double speed_of(const std::vector<double>& north_east);
 

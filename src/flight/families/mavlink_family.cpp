@@ -6,7 +6,6 @@
 #include "flight/families/derived_tracks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -119,24 +118,16 @@ double of_heartbeat(const telemetry::AutopilotLog& log, const char* field) {
     return column == nullptr || column->values.empty() ? no_value : column->values.front();
 }
 
-struct VehicleKind {
-    const char* name;      ///< behind "Ardu"
-    const char* firmware;  ///< as FlightInfo::firmware
-};
-
-VehicleKind kind_of(double type) {
-    constexpr std::array rotorcraft{2.0, 3.0, 4.0, 13.0, 14.0, 15.0, 29.0, 35.0, 43.0};
-    constexpr double fixed_wing = 1.0;
+/// ArduPilot's name of its vehicle, by MAVLink's number of the type.
+std::string ardupilot_name(double type) {
     constexpr double first_vtol = 19.0;
     constexpr double last_vtol = 25.0;
-    constexpr double ground_rover = 10.0;
-    constexpr double boat = 11.0;
     constexpr double submarine = 12.0;
-    if (std::ranges::find(rotorcraft, type) != rotorcraft.end()) return {"Copter", "rotorcraft"};
-    if (type == fixed_wing) return {"Plane", "fixedwing"};
-    if (type >= first_vtol && type <= last_vtol) return {"Plane", ""};
-    if (type == ground_rover || type == boat) return {"Rover", "rover"};
-    return {type == submarine ? "Sub" : "", ""};
+    const auto firmware = firmware_of_type(type);
+    if (firmware == "rotorcraft") return "ArduCopter";
+    if (firmware == "fixedwing" || (type >= first_vtol && type <= last_vtol)) return "ArduPlane";
+    if (firmware == "rover") return "ArduRover";
+    return type == submarine ? "ArduSub" : "ArduPilot";
 }
 
 void describe_mavlink(const telemetry::AutopilotLog& log, FlightSeries& series) {
@@ -144,17 +135,15 @@ void describe_mavlink(const telemetry::AutopilotLog& log, FlightSeries& series) 
     constexpr double px4 = 12.0;
     const auto& facts = log.facts;
     const double autopilot = of_heartbeat(log, "autopilot");
-    const auto kind = kind_of(of_heartbeat(log, "type"));
+    const double type = of_heartbeat(log, "type");
     series.aircraft_id = board_serial(facts);
     if (const auto uid = facts.information.find("uid"); series.aircraft_id.empty() && uid != facts.information.end())
         series.aircraft_id = uid->second;
     if (series.aircraft_id.empty()) series.aircraft_id = log.log.senders.front().id;
-    series.aircraft_name = autopilot == ardupilot ? fmt::format("Ardu{}", *kind.name != '\0' ? kind.name : "Pilot")
-                           : autopilot == px4     ? "PX4"
-                                                  : "MAVLink";
+    series.aircraft_name = autopilot == ardupilot ? ardupilot_name(type) : autopilot == px4 ? "PX4" : "MAVLink";
     const auto is_simulation = [](const auto& of) { return of.name == "SIMSTATE"; };
     if (std::ranges::any_of(log.messages, is_simulation)) series.aircraft_name += " SITL";
-    series.firmware = kind.firmware;
+    series.firmware = firmware_of_type(type);
     if (const auto start = facts.information.find("start_unix_s"); start != facts.information.end())
         series.start_clock_s = parse_number(start->second);
     series.monitor_capacities_ah = monitor_capacities_ah(facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");

@@ -142,14 +142,8 @@ const std::vector<FamilyTrack>& sdlog2_tracks() {
 
 /// The kind of vehicle by MAVLink's number, else by the status: "" if neither states it.
 std::string vehicle_kind(const telemetry::AutopilotLog& log) {
-    constexpr std::array rotorcraft{2.0, 3.0, 4.0, 13.0, 14.0, 15.0, 29.0};
-    constexpr double fixed_wing = 1.0;
-    constexpr double ground_rover = 10.0;
     const auto& parameters = log.facts.parameters;
-    if (const auto type = parameters.find("MAV_TYPE"); type != parameters.end()) {
-        if (std::ranges::find(rotorcraft, type->second) != rotorcraft.end()) return "rotorcraft";
-        return type->second == fixed_wing ? "fixedwing" : type->second == ground_rover ? "rover" : "";
-    }
+    if (const auto type = parameters.find("MAV_TYPE"); type != parameters.end()) return firmware_of_type(type->second);
     const auto* status = log.log.senders.front().table("vehicle_status");
     if (status == nullptr) return "";
     if (const auto* kind = status->column("vehicle_type")) {

@@ -64,7 +64,7 @@ TEST(AnswerText, DirectionOfTheWindMakesTheCourses) {
 TEST(AnswerText, TemperatureOfThePackIsThatOfTheLogs) {
     auto answer = answered();
     answer.pack.resistance_ohm = known(0.02, "measured on 3 flights");
-    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; temperature unknown: no log states it"));
+    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; temperature unknown: not read from the logs"));
     answer.pack.air_temperature_c = Interval{4.0, 12.0};
     EXPECT_THAT(text_of(answer), HasSubstr("in air of 4 to 12 degC, other temperatures unknown"));
 }
