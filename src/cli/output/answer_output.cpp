@@ -102,7 +102,7 @@ std::string time_line(const AircraftAnswer& answer) {
                             : "; in 95 of 100 flights unknown: " + time_95_s.unknown;
     if (const auto down_to = answer.pack.known_down_to_percent;
         down_to && *down_to > answer.question.reserve_soc_percent)
-        text += fmt::format("; voltage below {:.0f} % assumed: fly one pack lower", *down_to);
+        text += fmt::format("; no flight went below {:.0f} %: the voltage there is assumed", *down_to);
     return text;
 }
 
@@ -170,15 +170,16 @@ std::string health_line(const std::vector<answer::Pack>& packs) {
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-/// "return at 34 % or 2040 mAh left (too late in 4.9 of 100 flights), and at 22.10 V in cruise (by itself 42.0)".
+/// "return at 34 % or 2040 mAh left (too late in 5 of 100 flights), and at 22.10 V in cruise (alone too late in 42)".
 std::string action_text(const char* name, const answer::FailsafeAction& action) {
-    const auto percent = [](double chance) { return units::percent_per_whole * chance; };
+    const auto late = [](double chance) {
+        return fmt::format("too late in {:.3g}", units::percent_per_whole * chance);
+    };
     auto text = fmt::format("{} at {} % or {} mAh left", name, action.soc_percent, action.remaining_mah);
-    if (action.too_late) text += fmt::format(" (too late in {:.1f} of 100 flights)", percent(*action.too_late));
+    if (action.too_late) text += fmt::format(" ({} of 100 flights)", late(*action.too_late));
     if (!action.voltage) return text;
     text += fmt::format(", and at {:.2f} V in cruise", action.voltage->voltage_v);
-    return text +
-           (action.voltage->too_late ? fmt::format(" (by itself {:.1f})", percent(*action.voltage->too_late)) : "");
+    return text + (action.voltage->too_late ? fmt::format(" (alone {})", late(*action.voltage->too_late)) : "");
 }
 
 std::string failsafe_line(const AircraftAnswer& answer) {

@@ -35,8 +35,8 @@ TEST(AnswerText, EachActionHasItsOwnChanceOfBeingTooLate) {
     auto answer = answered();
     EXPECT_THAT(text_of(answer),
                 HasSubstr("return at 39 % or 2307 mAh left (too late in 4.9 of 100 flights), and "
-                          "at 14.16 V in cruise (by itself 12.3), from 500 m; land at 21 % or 1209 mAh "
-                          "left (too late in 1.0 of 100 flights); written by"));
+                          "at 14.16 V in cruise (alone too late in 12.3), from 500 m; land at 21 % or 1209 mAh "
+                          "left (too late in 1 of 100 flights); written by"));
     answer.failsafe->chances_known = false;
     for (auto* action : {&*answer.failsafe->low, &answer.failsafe->critical}) action->too_late.reset();
     EXPECT_THAT(text_of(answer), HasSubstr("1209 mAh left; chances unknown: two more flights would show"));
