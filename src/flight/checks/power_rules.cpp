@@ -107,8 +107,7 @@ bool is_brief_change(const PowerRecord& r, std::size_t i) {
     return usual_factor * ratio > 1.0 && percent <= smooth_percent / same_throttle_factor + same_throttle_percent;
 }
 
-/// In the order of the reports. Whatever could hide 5 % of the energy is reported (reasons for the limits:
-/// docs/methods.md).
+/// In the order of the reports. Whatever could hide 5 % of the energy is reported (docs/methods.md).
 constexpr PowerRule rules[] = {
     {.kind = "current at rest",
      .text = "more than 5 A in {percent:.0f} % of the samples on the ground with the motor off",
