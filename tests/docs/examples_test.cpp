@@ -1,4 +1,4 @@
-// The examples of docs/missions.md and docs/formats.md, and the commands of README.md, run as a user would.
+// The examples of docs/missions.md, docs/formats.md and tests/docs/files, and the commands of README.md, run as a user would.
 
 #include "base/atomic_file.h"
 #include "helpers/document.h"
@@ -84,15 +84,10 @@ TEST(Examples, AreReadByTheirPrograms) {
     for (const auto* files : {"fits", "missions"})
         std::filesystem::create_directory_symlink(source_dir() / files, folder / files);
     std::size_t run = 0;
-    for (const auto* page : {"missions.md", "formats.md"}) {
-        const auto document = read_document(source_dir() / "docs" / page);
-        for (const auto& example : document.examples) {
-            if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
-        }
-    }
-    for (const auto* page : {"formats.md", "missions.md"}) {
-        for (const auto& example : read_document(source_dir() / "docs" / page).examples) {
-            if (example.kind == "model") std::ofstream(folder / "wind-model.toml") << example.text;
+    for (const auto* page : {"formats.md", "missions.md", "tests/docs/files"}) {
+        const bool is_page = page != std::string("tests/docs/files");
+        const auto examples = is_page ? read_document(source_dir() / "docs" / page).examples : example_files();
+        for (const auto& example : examples) {
             const auto reading = reading_of(example, folder);
             ASSERT_FALSE(reading.program.empty()) << page << ":" << example.line << ": '" << example.kind << "'";
             auto code = run_program(reading.program, reading.arguments, folder);

@@ -174,6 +174,14 @@ Document read_document(const std::filesystem::path& path) {
     return document;
 }
 
+std::vector<DocumentedExample> example_files() {
+    std::vector<DocumentedExample> examples;
+    for (const auto& entry : std::filesystem::directory_iterator(source_dir() / "tests" / "docs" / "files"))
+        examples.push_back({entry.path().stem().string(), read_file(entry.path()), 1});
+    std::ranges::sort(examples, {}, &DocumentedExample::kind);
+    return examples;
+}
+
 std::vector<std::filesystem::path> all_documents() {
     const auto root = source_dir();
     std::vector<std::filesystem::path> found{root / "logs" / "README.md"};
