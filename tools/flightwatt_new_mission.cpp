@@ -54,6 +54,7 @@ struct NewMissionArguments {
     std::optional<std::string> plan;
     std::vector<std::string> blocks;
     std::optional<std::string> wind;
+    std::optional<double> airspeed_m_per_s;
     bool replaces = false;
     mission::NewMission mission;  ///< what options state of it
 };
@@ -72,6 +73,29 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     return name;
 }
 
+/// Chooses the airspeed of a new path: as an option states it, the plan, or the model's flights. What QGroundControl
+/// writes by default counts where the flights flew it: else it is a speed that was never set.
+void choose_airspeed(const NewMissionArguments& arguments, mission::NewMission& fresh) {
+    const auto& planned = fresh.flown->speed;
+    fresh.airspeed_m_per_s = arguments.airspeed_m_per_s;
+    if (fresh.airspeed_m_per_s) return;
+    const auto& [low, high] = fresh.model.physical->airspeed_m_per_s;
+    const bool is_flown = planned && planned->m_per_s >= low && planned->m_per_s <= high;
+    const auto flown =
+        fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", mission::new_airspeed_m_per_s(fresh.model));
+    auto& chosen = fresh.flown->chosen;
+    if (!planned) {
+        chosen.push_back(flown);
+    } else if (planned->is_default && !is_flown) {
+        chosen.push_back(fmt::format("{}, which did not fly the {} m/s of {}; --airspeed states another", flown,
+                                     planned->m_per_s, planned->source));
+    } else {
+        fresh.airspeed_m_per_s = planned->m_per_s;
+        chosen.push_back(
+            fmt::format("airspeed_m_per_s = {}, {}; --airspeed states another", planned->m_per_s, planned->source));
+    }
+}
+
 /// The mission that the options describe, to be written to `file`.
 mission::NewMission described_mission(const NewMissionArguments& arguments, const std::filesystem::path& file) {
     const auto mechanical = required_file(arguments.model, "model", "batch");
@@ -84,15 +108,15 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
     if (arguments.plan) {
-        if (!fresh.model.physical)
-            throw InputError({mechanical}, "has no [physical] part, which predicts the power along a plan",
-                             "make a model of flights that measured their airspeed, or give the time that the plan "
-                             "takes: --cruise TIME in place of --plan");
-        const double airspeed_m_per_s = mission::new_airspeed_m_per_s(fresh.model);
-        fresh.flown = mission::path_of_plan(*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
-                                            airspeed_m_per_s);
-        fresh.flown->chosen.push_back(
-            fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", airspeed_m_per_s));
+        if (!fresh.model.physical && !arguments.airspeed_m_per_s)
+            throw InputError(
+                {mechanical}, "has no [physical] part, which predicts the power along a plan",
+                "give the ground speed that its flights flew, --airspeed M_PER_S: their mean power in calm "
+                "air is then assumed; or make a model of flights that measured their airspeed");
+        fresh.flown = mission::path_of_plan(
+            *arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
+            arguments.airspeed_m_per_s.value_or(mission::new_airspeed_m_per_s(fresh.model)), fresh.model.is_rotorcraft);
+        choose_airspeed(arguments, fresh);
     }
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
@@ -113,8 +137,10 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
 std::string option_of(std::string_view text, std::size_t line) {
     for (; line > 1; --line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
     const std::string key(text.substr(0, text.find(' ')));
-    const std::map<std::string, std::string> options{
-        {"payload_kg", "--payload"}, {"takeoff_mass_kg", "--mass"}, {"speed_m_per_s", "--wind"}};
+    const std::map<std::string, std::string> options{{"payload_kg", "--payload"},
+                                                     {"airspeed_m_per_s", "--airspeed"},
+                                                     {"takeoff_mass_kg", "--mass"},
+                                                     {"speed_m_per_s", "--wind"}};
     const auto found = options.find(key);
     return found == options.end() ? "" : found->second;
 }
@@ -202,6 +228,9 @@ key as a comment, with its meaning and an example.)"};
                 "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
     options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},
                 "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
+    options.add("airspeed", arguments.airspeed_m_per_s,
+                {.value = "M_PER_S", .min = 0.0, .max = path::max_m_per_s, .above_min = true, .needs = {"plan"}},
+                "airspeed along the plan; default: that of the plan, or of the model's flights");
     options.add("wind", arguments.wind, {.value = "SPEED@DEG", .needs = {"plan"}},
                 "wind along the plan: 6@250 is 6 m/s from 250 degrees");
     options.add("packs", arguments.mission.packs, {.value = "N", .min = 1.0, .max = 1000.0},

@@ -49,6 +49,7 @@ Fields<PlanLimit> record_fields(const PlanLimit*) {
         result("longest_cruise_s", "longest feasible cruise"),
         result("most_circles", "with a path with circles: their largest number"),
         result("farthest_return_m", "with another path: distance along its legs, out and back"),
+        result("path_times", "with an area: how often its lines are flown"),
         result("largest_payload_w", "largest constant power of a payload"),
         field("final_soc_percent", at(&R::limit, &L::final_soc_percent), "at the end"),
         field("reserve_soc_percent", at(&R::mission, &mission::MissionSetup::reserve_soc_percent), "reserve"),
@@ -181,18 +182,26 @@ int print_limit(const cli::StageCall& call, const PlanArguments& arguments, cons
 
 /// --longest-cruise.
 int print_reach(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
-    const auto reach = mission::find_reach(
-        [&](const mission::MissionReadOptions& reading) { return file.read(reading); }, arguments.probability);
+    const auto load = [&](const mission::MissionReadOptions& reading) { return file.read(reading); };
+    const auto reach = mission::find_reach(load, arguments.probability);
     const auto mission = file.read();
     const auto& setup = setup_of(mission);
-    constexpr std::array<std::pair<const char*, const char*>, 3> questions{
-        {{"longest_cruise_s", "s"}, {"most_circles", "circles"}, {"farthest_return_m", "m"}}};
+    constexpr std::array<std::pair<const char*, const char*>, 4> questions{
+        {{"longest_cruise_s", "s"}, {"most_circles", "circles"}, {"farthest_return_m", "m"}, {"path_times", "times"}}};
     const auto& [question, unit] = questions.at(static_cast<std::size_t>(reach.unit));
     const int code = print_limit(call, arguments, setup, question, unit, reach.limit);
-    if (reach.unit == mission::ReachUnit::return_m && !call.json &&
-        reach.limit.value >= length_of_legs_m(setup.cruise_path->plan->path))
-        cli::note(call, fmt::format("{}: the whole path and the way back fit: that is the path's length, and no limit",
-                                    setup.name));
+    if (call.json) return code;
+    const auto note = [&](std::string_view text) { cli::note(call, fmt::format("{}: {}", setup.name, text)); };
+    if (reach.unit == mission::ReachUnit::path_times) note(describe_path_times(setup, reach.limit.value));
+    if (reach.unit != mission::ReachUnit::return_m) return code;
+    if (reach.limit.value >= length_of_legs_m(setup.cruise_path->plan->path))
+        note("the whole path and the way back fit: that is the path's length, and no limit");
+    try {
+        const auto times = mission::find_reach(load, arguments.probability, mission::ReachUnit::path_times);
+        note("without turning back " + describe_path_times(setup, times.limit.value));
+    } catch (const NoResultError& error) {
+        note(error.what());
+    }
     return code;
 }
 
@@ -235,8 +244,8 @@ and the result is a table of them (CSV); their schedules are in --json.)"};
                 "keep the reserve with this probability, 0.5 or more, as flights differ; default: as modelled");
     options.add(
         "longest-cruise", arguments.longest_cruise,
-        "instead: the longest cruise that lands with the reserve [s]; of a [path] the maximum number of circles, or "
-        "without any the maximum distance from where the mission returns [m]",
+        "instead: the longest cruise that lands with the reserve [s]; of a [path] the maximum number of circles, "
+        "without any the maximum distance from where the mission returns [m], and over an area how often it is flown",
         {.excludes = {"spare-power"}});
     options.add("spare-power", arguments.spare_power,
                 "instead: the largest constant power that may be drawn in addition, as by a camera [W]",

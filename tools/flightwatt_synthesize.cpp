@@ -155,7 +155,7 @@ void require_flyable(const mechanical::MechanicalModel& model, const std::string
         }
         if (!(max_w <= max_power_w)) {
             throw InputError({file}, fmt::format("the coefficients of {} add up to {} W, expected at most {} W",
-                                                 to_string(phase), max_w, max_power_w));
+                                                 phase_word(phase), max_w, max_power_w));
         }
     }
 }

@@ -224,15 +224,6 @@ mechanical::ConstantPower measured_cruise(const mechanical::MechanicalModel& mod
     return power;
 }
 
-/// The flights' mean cruise power, whatever the motion.
-mechanical::PhysicalModel constant_power(const mechanical::MechanicalModel& model) {
-    mechanical::PhysicalModel power;
-    power.terms = {mechanical::PowerTerm::constant};
-    power.coefficients[mechanical::PowerTerm::constant] = measured_cruise(model, 0.0).mean_w;
-    power.covariance = {{0.0}};
-    return power;
-}
-
 /// A mission of the way home and the landing.
 mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHome& way) {
     constexpr double least_m = 1.0;
@@ -247,7 +238,7 @@ mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHo
         leg.shape = path::Leg{distance_m, way.course_deg};
         leg.airspeed_m_per_s = way.airspeed_m_per_s;
         leg.name = "the way home";
-        auto power = request.model.physical.value_or(constant_power(request.model));
+        auto power = request.model.physical.value_or(mission::constant_cruise_power(request.model));
         if (request.model.physical) add_constant_power(power_beyond_straight_flight_w(request.model), power);
         set_cruise_path(setup, {{{leg}}, way.wind, std::move(power)});
         if (!request.model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);

@@ -394,7 +394,7 @@ std::vector<std::string> model_warnings(const MechanicalModel& model) {
             warnings.push_back(
                 fmt::format("{}: the curve falls to {:.3g} W: implausible without regeneration; try "
                             "another order or more flights",
-                            to_string(phase), lowest_w));
+                            phase_word(phase), lowest_w));
     }
     return warnings;
 }
@@ -404,7 +404,7 @@ std::vector<std::string> fit_notes(const MechanicalModel& model) {
     for (const auto phase : flight::all_phases) {
         const auto& fitted = model.phases[phase];
         const auto note = [&](const std::string& text) {
-            notes.push_back(fmt::format("{}: {}", to_string(phase), text));
+            notes.push_back(fmt::format("{}: {}", phase_word(phase), text));
         };
         if (fitted.power.by == PowerBasis::mean)
             note(fmt::format("predicted by its mean power: {}", fitted.power.reason));

@@ -43,7 +43,7 @@ std::string described(const ModelFitOptions& options, std::size_t flights) {
 void require_finite(flight::Phase phase, const FourierModel& model) {
     if (coefficients_of(model).allFinite()) return;
     throw NoResultError(
-        fmt::format("{}: the fit's coefficients are not finite: check the power of all samples", to_string(phase)));
+        fmt::format("{}: the fit's coefficients are not finite: check the power of all samples", phase_word(phase)));
 }
 
 /// `points` fractions of a phase, from 0 to 1.

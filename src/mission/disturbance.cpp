@@ -21,7 +21,7 @@ TimeFrame frame_of(const TomlTable& entry, const PerPhase<double>& duration_s) {
     const auto timeline = timeline_of(duration_s);
     if (!entry.has("phase")) return {"the mission", 0.0, timeline.duration_s};
     const auto phase = read_flown_phase(entry, duration_s);
-    return {std::string(to_string(phase)), timeline.start_s[phase], duration_s[phase]};
+    return {std::string(phase_word(phase)), timeline.start_s[phase], duration_s[phase]};
 }
 
 /// A time that an entry gives, as mission time.

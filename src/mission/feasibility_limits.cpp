@@ -246,27 +246,62 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
     throw NoResultError("from nowhere along the path does the mission return with its reserve");
 }
 
-ReachUnit reach_unit_of(const MissionSetup& mission) {
-    if (!mission.cruise_path) return ReachUnit::cruise_s;
-    const bool has_circles = std::ranges::any_of(mission.cruise_path->plan->path.elements, [](const auto& element) {
-        return std::holds_alternative<path::Circles>(element.shape);
-    });
-    return has_circles ? ReachUnit::circles : ReachUnit::return_m;
+FeasibilityLimit most_path_times(const MissionVariation& with_path_times, const std::optional<double>& probability) {
+    constexpr double max_times_tried = 1000.0;
+    LimitSearch search(with_path_times, probability);
+    search.require_end(max_times_tried, "flown {:.0f} times, the path still lands with the reserve");
+    search.refine();
+    if (!search.good())
+        throw NoResultError("from nowhere along the path does the mission land with its reserve" + search.share_text());
+    return search.limit(*search.good(), *search.good() * (1.0 + 1e-9));
 }
 
-Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability) {
+std::string describe_path_times(const MissionSetup& mission, double times) {
+    const auto& plan = *mission.cruise_path->plan;
+    const auto once = compute_trajectory(plan.path, plan.wind);
+    const double whole = std::floor(times);
+    const double share_percent = units::percentage(times - whole, 1.0);
+    if (whole == 0.0) {
+        const auto end = position_at(once, times * once.duration_s).element;
+        return fmt::format("{:.0f} % of the path fits: {} of {}, until element {} of {}, {}", share_percent,
+                           duration_text(times * once.duration_s), duration_text(once.duration_s), end + 1,
+                           plan.path.elements.size(), plan.path.elements.at(end).name);
+    }
+    const auto all = compute_trajectory(repeated(plan.path, plan.wind, times), plan.wind);
+    const auto up_to_whole = compute_trajectory(repeated(plan.path, plan.wind, whole), plan.wind);
+    return fmt::format(
+        "the path is flown {}; {} of cruise remain, {:.0f} % of another time with the way back to its start",
+        whole == 1.0 ? "once" : fmt::format("{:.0f} times", whole),
+        duration_text(all.duration_s - up_to_whole.duration_s), share_percent);
+}
+
+ReachUnit reach_unit_of(const MissionSetup& mission) {
+    if (!mission.cruise_path) return ReachUnit::cruise_s;
+    bool has_turns = false;
+    for (const auto& element : mission.cruise_path->plan->path.elements)
+        if (std::holds_alternative<path::Circles>(element.shape)) {
+            if (!element.is_turn) return ReachUnit::circles;
+            has_turns = true;
+        }
+    return has_turns ? ReachUnit::path_times : ReachUnit::return_m;
+}
+
+Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability,
+                 std::optional<ReachUnit> measure) {
     const auto mission = mission_of({.allow_unplanned = true});
     const auto& setup = setup_of(mission);
-    const auto unit = reach_unit_of(setup);
+    const auto unit = measure.value_or(reach_unit_of(setup));
     const MissionVariation variation = [&](double value) {
         MissionReadOptions reading{.allow_unplanned = true};
-        (unit == ReachUnit::cruise_s  ? reading.cruise_s
-         : unit == ReachUnit::circles ? reading.circles
-                                      : reading.return_after_m) = value;
+        (unit == ReachUnit::cruise_s   ? reading.cruise_s
+         : unit == ReachUnit::circles  ? reading.circles
+         : unit == ReachUnit::return_m ? reading.return_after_m
+                                       : reading.path_times) = value;
         return mission_of(reading);
     };
     if (unit == ReachUnit::cruise_s) return {unit, longest_cruise(variation, probability)};
     if (unit == ReachUnit::circles) return {unit, max_circles(variation, probability)};
+    if (unit == ReachUnit::path_times) return {unit, most_path_times(variation, probability)};
     return {unit, farthest_return(variation, length_of_legs_m(setup.cruise_path->plan->path), probability)};
 }
 

@@ -42,11 +42,20 @@ FeasibilityLimit max_circles(const MissionVariation& with_circles,
 FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, double length_m,
                                  const std::optional<double>& probability = std::nullopt);
 
+/// How often the path fits, also a fraction of it (path::repeated). Throws NoResultError if nothing of it does, or more
+/// than 1000 times.
+FeasibilityLimit most_path_times(const MissionVariation& with_path_times,
+                                 const std::optional<double>& probability = std::nullopt);
+
+/// States how much of the mission's path that is, or how much of another fits.
+std::string describe_path_times(const MissionSetup& mission, double times);
+
 /// Measure of a mission's reach.
 enum class ReachUnit {
-    cruise_s,  ///< of a mission without a path
-    circles,   ///< of a path that has some
-    return_m   ///< along the legs of another, before it turns back
+    cruise_s,   ///< of a mission without a path
+    circles,    ///< of a path that has some
+    return_m,   ///< along the legs of another, before it turns back
+    path_times  ///< of lines with turns between them, as over an area
 };
 
 /// How far a mission can go and still land with its reserve.
@@ -60,8 +69,10 @@ ReachUnit reach_unit_of(const MissionSetup& mission);
 /// Reads the mission's file with given options.
 using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
 
-/// longest_cruise, max_circles or farthest_return; throws as they do.
-Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt);
+/// longest_cruise, max_circles, farthest_return or most_path_times, by default of the mission's own unit; throws as
+/// they do.
+Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& probability = std::nullopt,
+                 std::optional<ReachUnit> unit = std::nullopt);
 
 /// How far a mission without a feasible schedule misses its reserve, and remedies, each sufficient on its own; none
 /// where a measure alone is not sufficient.

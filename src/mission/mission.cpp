@@ -31,6 +31,13 @@ void require_single_flight(const MissionSetup& mission) {
                          "for one flight leave [packs] out");
 }
 
+mechanical::PhysicalModel constant_cruise_power(const mechanical::MechanicalModel& model) {
+    const auto& cruise = model.phases[Phase::cruise];
+    mechanical::PhysicalModel power;
+    add_constant_power(energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s, power);
+    return power;
+}
+
 void set_cruise_path(MissionSetup& mission, path::PlannedPath plan) {
     const auto shared = std::make_shared<const path::PlannedPath>(std::move(plan));
     const auto flown = compute_trajectory(shared->path, shared->wind);

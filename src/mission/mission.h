@@ -131,6 +131,9 @@ const MissionSetup& setup_of(const MissionVariant& mission);
 /// Throws InputError for a mission over several packs: it is divided before anything flies it.
 void require_single_flight(const MissionSetup& mission);
 
+/// Returns a model of the power whatever the motion: the mean of the model's cruise.
+mechanical::PhysicalModel constant_cruise_power(const mechanical::MechanicalModel& model);
+
 /// Makes the cruise of a path: its duration, and its level and power by the physical model. Throws as
 /// compute_trajectory.
 void set_cruise_path(MissionSetup& mission, path::PlannedPath plan);

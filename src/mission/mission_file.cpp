@@ -35,7 +35,7 @@ std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root
 void find_power_model(const TomlTable& root, MissionSetup& mission) {
     if (!mission.mechanical || !mission.mechanical->validation) return;
     const auto& validation = *mission.mechanical->validation;
-    const bool knows_airspeed = root.has("airspeed_m_per_s") || root.has("path");
+    const bool knows_airspeed = mission.mechanical->physical && (root.has("airspeed_m_per_s") || root.has("path"));
     const auto model = knows_airspeed ? "physical" : default_model(*mission.mechanical);
     const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
     if (score != validation.scores.end())

@@ -8,9 +8,11 @@ namespace flightwatt::mission {
 struct MissionReadOptions {
     bool allow_unplanned = false;         ///< accepts a mission that is not planned yet
     std::optional<double> cruise_s = {};  ///< duration of the cruise, instead of the file's
-    // Changes of a path: turns of its last circles; or distance along the legs after which it returns.
+    // Changes of a path: turns of its last circles; distance along the legs after which it returns; how often it is
+    // flown.
     std::optional<double> circles = {};
     std::optional<double> return_after_m = {};
+    std::optional<double> path_times = {};
 };
 
 }  // namespace flightwatt::mission

@@ -77,22 +77,20 @@ std::vector<std::string> only_block(std::string_view text, const std::string& fi
 }  // namespace
 
 NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
-                     double airspeed_m_per_s) {
+                     double airspeed_m_per_s, bool is_rotorcraft) {
     const auto text = read_file(file);
     if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s);
     const bool of_blocks = has_blocks(text);
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
-        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s};
-        if (of_blocks)
-            path::parse_plan_blocks(text, file.string(), blocks, settings);
-        else
-            path::read_waypoints(file, settings);
+        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft};
+        return of_blocks ? path::parse_plan_blocks(text, file.string(), blocks, settings)
+                         : path::read_waypoints(file, settings);
     };
     NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(name))}, {}};
     if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
     try {
-        read(std::nullopt);
+        path.speed = read(std::nullopt).speed;
     } catch (const InputError&) {  // it may leave a radius to the autopilot
         const double radius_m = turn_radius_m(airspeed_m_per_s);
         read(radius_m);

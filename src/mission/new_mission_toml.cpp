@@ -66,7 +66,8 @@ void add_aircraft(const NewMission& mission, Values& values) {
     // Stated where the physical model makes the cruise's power of it.
     values["physical"] = if_so(knows_airspeed(model) && !mission.flown);
     values["not_physical"] = if_so(!knows_airspeed(model));
-    values["airspeed"] = fmt::format("{:.1f}", new_airspeed_m_per_s(model));
+    values["airspeed"] = mission.airspeed_m_per_s ? fmt::format("{}", *mission.airspeed_m_per_s)
+                                                  : fmt::format("{:.1f}", new_airspeed_m_per_s(model));
     values["takeoff_mass"] = mission.takeoff_mass_kg ? fmt::format("{}", *mission.takeoff_mass_kg) : "";
     values["payload"] = mission.payload_kg ? fmt::format("{}", *mission.payload_kg) : "";
 }

@@ -32,8 +32,9 @@ struct NewMission {
     std::optional<double> cruise_s = {};  ///< none: the mean of the model's flights
     std::optional<double> payload_kg = {};
     std::optional<double> takeoff_mass_kg = {};
-    std::optional<NewPath> flown = {};    ///< then it decides the duration of the cruise
-    std::optional<path::Wind> wind = {};  ///< along the path
+    std::optional<NewPath> flown = {};            ///< then it decides the duration of the cruise
+    std::optional<double> airspeed_m_per_s = {};  ///< none: new_airspeed_m_per_s()
+    std::optional<path::Wind> wind = {};          ///< along the path
     std::size_t packs = 1;
     bool states_parameters = false;  ///< names of the profiles' parameters are stated, as the files lack them
     bool shows_all_keys = false;

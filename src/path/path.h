@@ -47,6 +47,7 @@ struct PathElement {
     /// climb and descent. Absent: the change is spread evenly over the element.
     std::optional<double> climb_rate_m_per_s = std::nullopt;
     bool is_return_leg = false;  ///< the leg from the end of the path to its start
+    bool is_turn = false;        ///< circles between lines, which are not repeated
     std::string name;            ///< its name in messages: "leg 3"
     Location where;
 };

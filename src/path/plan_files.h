@@ -11,7 +11,16 @@ namespace flightwatt::path {
 /// Values that a plan leaves to the autopilot's settings.
 struct AutopilotSettings {
     std::optional<double> radius_m;  ///< radius of circles for which the plan states none
-    double airspeed_m_per_s = 0.0;   ///< airspeed for circles that end after a time; 0: they are flown once
+    /// Airspeed for circles that end after a time; 0: the plan's own, without which they are flown once.
+    double airspeed_m_per_s = 0.0;
+    bool is_rotorcraft = false;  ///< of plans that name no kind of vehicle
+};
+
+/// The airspeed that a plan states for all legs without one of their own.
+struct PlannedSpeed {
+    double m_per_s = 0.0;
+    std::string source;       ///< "the plan's hoverSpeed"
+    bool is_default = false;  ///< what QGroundControl writes where it was never set
 };
 
 /// The movements of a plan, in the order of the flight.
@@ -19,6 +28,7 @@ struct PlanEntries {
     std::vector<PathEntry> entries;
     std::vector<std::string> not_flown = {};  ///< "line 80: the circle around STDBY has no end: it is flown once"
     bool starts_at_first_place = false;       ///< see PathDefaults
+    std::optional<PlannedSpeed> speed = {};
 };
 
 /// A block of a flight plan, read alone; or the whole mission of a plan in another format.

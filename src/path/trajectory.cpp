@@ -205,6 +205,31 @@ std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double cours
     return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
 }
 
+FlightPath repeated(const FlightPath& path, const Wind& wind, double times) {
+    const auto add_share = [&](const FlightPath& round, double share, FlightPath& to) {
+        const auto flown = compute_trajectory(round, wind);
+        const auto part = path_between(round, {}, position_at(flown, share * flown.duration_s));
+        to.elements.insert(to.elements.end(), part.elements.begin(), part.elements.end());
+    };
+    FlightPath result;
+    add_share(path, std::min(times, 1.0), result);
+    if (times <= 1.0) return result;
+    constexpr double same_place_m = 1e-3;
+    FlightPath round = path;
+    const auto end = local_position_at(path, {path.elements.size(), 0.0});
+    if (const double length_m = std::hypot(end.east_m, end.north_m); length_m > same_place_m) {
+        PathElement back = path.elements.back();
+        back.shape = Leg{length_m, std::atan2(-end.east_m, -end.north_m) * units::degree_per_rad};
+        back.name = "way back to the start";
+        back.climb_rate_m_per_s.reset();
+        back.altitude_change_m = 0.0;
+        for (const auto& element : path.elements) back.altitude_change_m -= element.altitude_change_m;
+        round.elements.insert(round.elements.begin(), std::move(back));
+    }
+    for (double left = times - 1.0; left > 0.0; left -= 1.0) add_share(round, std::min(left, 1.0), result);
+    return result;
+}
+
 PathPosition position_at(const PathTrajectory& flown, double time_s) {
     double start_s = 0.0;
     for (std::size_t i = 0; i < flown.element_s.size(); ++i) {

@@ -136,6 +136,33 @@ TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     EXPECT_THROW(farthest_return(downwind, 600.0), InputError);
 }
 
+TEST(PathLimits, FindHowOftenThePathFits) {
+    const FlightPath path{{path_element(Leg{6000.0, 0.0}), path_element(Leg{3000.0, 90.0})}};
+    const auto mission_of = [&](double reserve_percent) {
+        return [&path, reserve_percent](double times) {
+            return with_reserve(path_mission(path::repeated(path, {}, times)), reserve_percent);
+        };
+    };
+    const auto setup = path_mission(path).setup;
+    // 21.97 W at 13 m/s, of 10 Wh; back straight to the start before the second time.
+    const double flown_m = 0.5 * 36000.0 / 21.97 * 13.0;
+    const double again_m = 9000.0 + std::hypot(6000.0, 3000.0);
+    const auto more = most_path_times(mission_of(50.0));
+    EXPECT_NEAR(more.value, 1.0 + (flown_m - 9000.0) / again_m, 1e-6);
+    EXPECT_NEAR(more.residual_percent, 0.0, 1e-5);
+    EXPECT_EQ(
+        describe_path_times(setup, 1.25),
+        "the path is flown once; 5 min 2 s of cruise remain, 25 % of another time with the way back to its start");
+    const auto less = most_path_times(mission_of(80.0));
+    EXPECT_NEAR(less.value, 0.2 * 36000.0 / 21.97 * 13.0 / 9000.0, 1e-6);
+    EXPECT_EQ(describe_path_times(setup, 0.8),
+              "80 % of the path fits: 9 min 14 s of 11 min 32 s, until element 2 of 2, leg");
+    EXPECT_THROW(most_path_times(mission_of(100.5)), NoResultError);
+    auto turn = path_element(Circles{100.0, 0.5});
+    turn.is_turn = true;
+    EXPECT_EQ(reach_unit_of(path_mission({{path_element(Leg{600.0, 0.0}), turn}}).setup), ReachUnit::path_times);
+}
+
 /// Out across the wind, and then with a wind that forbids that way back.
 TEST(PathLimits, StopWhereTheWindForbidsTheWayBack) {
     const FlightPath path{{path_element(Leg{600.0, 90.0}), path_element(Leg{600.0, 0.0})}};

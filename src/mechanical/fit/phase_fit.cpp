@@ -214,7 +214,7 @@ PhaseFit fit_phase(flight::Phase phase, std::span<const PhaseSamples> flights, c
         hold_above_zero(flights, fit);
         return fit;
     } catch (const NoResultError& error) {
-        throw NoResultError(fmt::format("{}: {}", to_string(phase), error.what()));
+        throw NoResultError(fmt::format("{}: {}", phase_word(phase), error.what()));
     }
 }
 

@@ -105,10 +105,14 @@ path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     return entry;
 }
 
+void read_path_airspeed(const TomlTable& path, path::PathDefaults& defaults) {
+    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, path::max_m_per_s), path, "airspeed_m_per_s");
+}
+
 path::PathDefaults read_defaults(const TomlTable& path) {
     path::PathDefaults defaults;
     defaults.where = path.where();
-    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, path::max_m_per_s), path, "airspeed_m_per_s");
+    if (!path.has("waypoints") || path.has("airspeed_m_per_s")) read_path_airspeed(path, defaults);
     defaults.altitude_m = optional_number_in(between(-1e5, 1e5), path, "altitude_m");
     defaults.rates = read_rates(path);
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
@@ -141,10 +145,11 @@ void require_one_file(const TomlTable& path) {
 }
 
 /// Movements of the file that the path names; none without one.
-path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
+path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s, bool is_rotorcraft) {
     require_one_file(path);
     const path::AutopilotSettings settings{
-        optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s};
+        optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s,
+        is_rotorcraft};
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
         if (!path.has("spacing_m") || !path.has("heading_deg"))
@@ -171,7 +176,15 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s) {
 
 /// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
 std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
-    auto plan = read_planned(path, defaults.airspeed_m_per_s);
+    const bool is_rotorcraft = mission.mechanical && mission.mechanical->is_rotorcraft;
+    auto plan = read_planned(path, defaults.airspeed_m_per_s, is_rotorcraft);
+    if (!path.has("airspeed_m_per_s") && plan.speed) {
+        defaults.airspeed_m_per_s = plan.speed->m_per_s;
+        mission.notes.push_back(
+            fmt::format("path: airspeed_m_per_s is not stated: {} m/s, {}", plan.speed->m_per_s, plan.speed->source));
+    } else if (defaults.airspeed_m_per_s == 0.0) {
+        read_path_airspeed(path, defaults);  // which throws
+    }
     for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
     auto& entries = plan.entries;
     defaults.starts_at_first_place = plan.starts_at_first_place;
@@ -197,11 +210,22 @@ void apply_precedence_of_path(const TomlTable& root, MissionSetup& mission) {
                          "state how the wind differs: speed_sd_m_per_s and direction_sd_deg in [wind]");
 }
 
-/// The physical model of the mission.
-const mechanical::PhysicalModel& power_model(const TomlTable& path, const MissionSetup& mission) {
+/// The physical model of the mission; without one the mean power of its flights, in calm air.
+mechanical::PhysicalModel power_model(const TomlTable& root, const TomlTable& path, const path::Wind& wind,
+                                      MissionSetup& mission) {
     if (!mission.mechanical)
         throw InputError(path.where(), "a path has no meaning with mechanical = \"none\"", "leave it out");
-    return physical_of(*mission.mechanical, path.where());
+    if (mission.mechanical->physical) return *mission.mechanical->physical;
+    if (wind.speed_m_per_s > 0.0 || wind.speed_sd_m_per_s > 0.0)
+        throw InputError(root.table("wind").where("speed_m_per_s"),
+                         "the flight in wind is unknown: the mechanical model has no [physical] part, of flights that "
+                         "measured their airspeed",
+                         "without wind the path is flown at the mean power of the model's flights");
+    mission.notes.emplace_back(
+        "path: calm air and the mean cruise power of the model's flights are assumed, whatever the airspeed, climbs "
+        "and turns, as the model has no [physical] part: state the ground speed that they flew; the flight in wind is "
+        "unknown");
+    return constant_cruise_power(*mission.mechanical);
 }
 
 /// The entry whose circles may be repeated: the last that has some, and is no turn between lines.
@@ -238,15 +262,8 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
                               "area", "spacing_m", "heading_deg", "leg"});
     auto defaults = read_defaults(table);
     auto entries = read_entries(table, defaults, mission);
-    if (reading.circles) {
-        auto* repeated = repeated_circles(entries);
-        if (repeated == nullptr)
-            throw NoResultError(
-                "an area is flown once, and has no circles that could be repeated: flightwatt simulate shows the charge "
-                "left at its end; where that misses the reserve, fly it with several packs (new-mission --packs N), or "
-                "with a larger spacing_m");
+    if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
-    }
     auto path = build_path(entries, defaults);
     if (packs) mission.packs->home = read_home(*packs, entries, defaults);
     if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
@@ -299,8 +316,10 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     path::PlannedPath plan;
     plan.path = read_path(*table, reading, mission_table.optional_table("packs"), mission);
     plan.wind = read_wind(mission_table);
-    plan.power = power_model(*table, mission);
-    const double limit = max_predicted_airspeed_m_per_s(plan.power);
+    if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
+    plan.power = power_model(mission_table, *table, plan.wind, mission);
+    const bool is_physical = mission.mechanical->physical.has_value();
+    const double limit = is_physical ? max_predicted_airspeed_m_per_s(plan.power) : path::max_m_per_s;
     for (const auto& element : plan.path.elements)
         if (element.airspeed_m_per_s > limit)
             throw InputError(table->where(),
@@ -309,7 +328,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
                              near_flown_hint(plan.power));
     const auto flown = compute_trajectory(plan.path, plan.wind);
     mission.has_steep_turn = has_steep_turn(flown);
-    for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
+    if (is_physical)
+        for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));
 }
 

@@ -15,7 +15,7 @@ namespace flightwatt::mission {
 namespace {
 
 std::string spell(Phase phase, double start_s, double end_s) {
-    return fmt::format("{} from {:.6g} s to {:.6g} s", to_string(phase), start_s, end_s);
+    return fmt::format("{} from {:.6g} s to {:.6g} s", phase_word(phase), start_s, end_s);
 }
 
 /// The number before the '%' of "40 %".

@@ -30,6 +30,7 @@ struct MissionItems {
     std::array<double, 3> home = {};  ///< latitude, longitude and altitude above the sea, or NaN
     std::vector<MissionItem> items;
     Location where;
+    std::optional<PlannedSpeed> speed = {};
 };
 
 // MAV_CMD
@@ -52,7 +53,9 @@ std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_d
 class ItemReader {
   public:
     ItemReader(const MissionItems& mission, const AutopilotSettings& settings)
-        : settings_(settings), home_(place_at(mission.home[0], mission.home[1], "home", mission.where)) {
+        : settings_(settings),
+          home_(place_at(mission.home[0], mission.home[1], "home", mission.where)),
+          speed_(mission.speed) {
         if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
     }
 
@@ -101,7 +104,7 @@ class ItemReader {
             entries_.front().where = where;
             entries_.front().geographic = home_;
         }
-        PlanEntries plan{std::move(entries_), {}, true};
+        PlanEntries plan{std::move(entries_), {}, true, speed_};
         for (const auto& [text, items] : reports_)
             plan.not_flown.push_back(fmt::format(
                 "{}{}: {}", items.first, items.count == 1 ? "" : fmt::format(" and {} more", items.count - 1), text));
@@ -187,7 +190,9 @@ class ItemReader {
             return fly_to(item, is_time ? amount : 0.0);
         }
         const double radius_m = is_stated ? stated_m : *settings_.radius_m;
-        const double airspeed = airspeed_m_per_s_.value_or(settings_.airspeed_m_per_s);
+        const double planned =
+            settings_.airspeed_m_per_s > 0.0 || !speed_ ? settings_.airspeed_m_per_s : speed_->m_per_s;
+        const double airspeed = airspeed_m_per_s_.value_or(planned);
         double turns = amount;
         if (is_time) turns = airspeed > 0.0 ? amount * airspeed / (2.0 * std::numbers::pi * std::abs(radius_m)) : 1.0;
         if (!(turns > 0.0)) return fly_to(item, 0.0);
@@ -197,10 +202,11 @@ class ItemReader {
     }
 
     void set_speed(const MissionItem& item) {
-        const bool is_airspeed = item.parameters[0] == 0.0;
+        const double kind = item.parameters[0];  // SPEED_TYPE: 0 airspeed, 1 ground speed, as multirotors have it
         const double speed = item.parameters[1];
-        if (!is_airspeed || !(speed > 0.0 && speed <= max_m_per_s))
+        if (!(kind == 0.0 || kind == 1.0) || !(speed > 0.0 && speed <= max_m_per_s))
             return report(item, "the change of speed is not flown: it states no airspeed");
+        if (kind == 1.0) report(item, "the ground speed is flown as an airspeed, which it is in calm air");
         airspeed_m_per_s_ = speed;
     }
 
@@ -211,6 +217,7 @@ class ItemReader {
 
     const AutopilotSettings& settings_;
     std::optional<GeodeticPosition> home_;
+    std::optional<PlannedSpeed> speed_;
     double home_altitude_m_ = 0.0;
     bool takes_off_ = false;  ///< an item states where
     std::optional<double> airspeed_m_per_s_;
@@ -228,7 +235,7 @@ PlanEntries fly_items(const MissionItems& mission, const AutopilotSettings& sett
 /// exception of the library.
 class QgcReader {
   public:
-    explicit QgcReader(const std::string& file) { mission_.where = {file}; }
+    QgcReader(const std::string& file, bool is_rotorcraft) : is_rotorcraft_(is_rotorcraft) { mission_.where = {file}; }
 
     MissionItems read(const Json& plan) {
         if (!plan.is_object() || plan.value("fileType", Json()) != "Plan")
@@ -240,6 +247,7 @@ class QgcReader {
         try {
             require_version(mission, 2, 2, name_);
             copy_numbers(mission, "plannedHomePosition", mission_.home);
+            read_speed(mission);
             read_items(mission.at("items"), "item", false);
         } catch (const Json::exception& error) {  // "[json.exception.type_error.302] type must be array"
             const std::string text = error.what();
@@ -268,6 +276,24 @@ class QgcReader {
             refuse(fmt::format("{} has {} {}", name_, values.size(), key), fmt::format("expected {}", N));
         std::ranges::transform(values, to.begin(),
                                [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); });
+    }
+
+    /// Reads hoverSpeed for multirotors, by vehicleType, and otherwise cruiseSpeed; 0 states none.
+    void read_speed(const Json& mission) {
+        constexpr std::array multirotors{2, 3, 4, 13, 14, 15, 29, 35, 43};  // MAV_TYPE, with helicopters
+        constexpr double default_hover_m_per_s = 5.0, default_cruise_m_per_s = 15.0;
+        const auto type = mission.value("vehicleType", Json());
+        const bool is_known = type.is_number_integer() && type != 0;
+        const bool hovers = is_known ? std::ranges::count(multirotors, type.get<int>()) > 0 : is_rotorcraft_;
+        const auto* key = hovers ? "hoverSpeed" : "cruiseSpeed";
+        const auto speed = mission.value(key, Json());
+        if (!speed.is_number() || speed == 0.0) return;
+        PlannedSpeed planned{speed.get<double>(), fmt::format("the plan's {}", key)};
+        require_in(more_than_up_to(0.0, max_m_per_s), planned.m_per_s, key, mission_.where);
+        planned.is_default = planned.m_per_s == (hovers ? default_hover_m_per_s : default_cruise_m_per_s);
+        if (!is_known) planned.source += hovers ? " (no vehicleType: as a rotorcraft)" : " (no vehicleType: as a wing)";
+        if (planned.is_default) planned.source += ", QGroundControl's default";
+        mission_.speed = std::move(planned);
     }
 
     void read_items(const Json& items, const std::string& name, bool is_inner) {
@@ -311,6 +337,7 @@ class QgcReader {
             mission_.items.push_back({0, 0, {}, name_, mission_.where});
     }
 
+    bool is_rotorcraft_;
     MissionItems mission_;
     std::string name_;  ///< of the object that is read
 };
@@ -335,7 +362,8 @@ std::vector<double> item_numbers(const std::string& line, const Location& where)
 }  // namespace
 
 PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
-    return fly_items(QgcReader(file).read(parse_json(text, file, "expected a plan of QGroundControl")), settings);
+    QgcReader reader(file, settings.is_rotorcraft);
+    return fly_items(reader.read(parse_json(text, file, "expected a plan of QGroundControl")), settings);
 }
 
 PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings) {

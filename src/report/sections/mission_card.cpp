@@ -98,14 +98,16 @@ std::string describe_software(const SimulatedMission& simulated) {
 std::string describe_reach(const mission::Reach& reach) {
     if (reach.unit == ReachUnit::circles) return fmt::format("{:.0f} circles", reach.limit.value);
     if (reach.unit == ReachUnit::return_m) return fmt::format("{:.1f} km out and back", reach.limit.value / 1000.0);
+    if (reach.unit == ReachUnit::path_times) return fmt::format("{:.2f} times", reach.limit.value);
     return duration_text(reach.limit.value);
 }
 
 std::string name_of_reach(const MissionAssessment& answer) {
     const auto unit = answer.reach ? answer.reach->unit : ReachUnit::cruise_s;
-    const std::string name = unit == ReachUnit::circles    ? "Most circles"
-                             : unit == ReachUnit::return_m ? "Farthest return"
-                                                           : "Longest cruise";
+    const std::string name = unit == ReachUnit::circles      ? "Most circles"
+                             : unit == ReachUnit::return_m   ? "Farthest return"
+                             : unit == ReachUnit::path_times ? "The area is flown"
+                                                             : "Longest cruise";
     return name + (answer.reach_at_95_percent ? " at 95 %" : ", as modelled");
 }
 

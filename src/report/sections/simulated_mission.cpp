@@ -24,7 +24,8 @@ Fields<Reach> record_fields(const Reach*) {
     };
     return {of("longest_cruise_s", ReachUnit::cruise_s, "without a path"),
             of("most_circles", ReachUnit::circles, "of a path with circles"),
-            of("farthest_return_m", ReachUnit::return_m, "of another path, out and back")};
+            of("farthest_return_m", ReachUnit::return_m, "of another path, out and back"),
+            of("path_times", ReachUnit::path_times, "of an area: how often its lines are flown")};
 }
 
 }  // namespace flightwatt::mission

@@ -173,12 +173,19 @@ TEST(PathToml, DurationAndPowerFollowFromThePath) {
                 takeoff_and_landing_wh + energy_j(*mission.setup.cruise_path) / 3600.0, 1e-9);
 }
 
-TEST(PathToml, NeedsAModelThatKnowsMotion) {
+TEST(PathToml, AssumesTheMeanPowerInCalmAirWithoutAModelThatKnowsMotion) {
     const auto folder = path_folder();
+    const auto calm = out_and_back.substr(0, out_and_back.find("[wind]"));
+    const auto mission = read(folder, "plain.toml", calm);
+    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 1800.0 / 13.0,
+                0.2);  // the climb takes a little of the airspeed
+    EXPECT_NEAR(mean_power_w(*mission.setup.cruise_path), cruise_w(mission), 1e-9);
+    ASSERT_EQ(mission.setup.notes.size(), 1U);
+    EXPECT_NE(mission.setup.notes.front().find("the flight in wind is unknown"), std::string::npos);
     EXPECT_EQ(
         rejected([&] { read(folder, "plain.toml", out_and_back); }, folder),
-        "m.toml:3:1: the mechanical model 'opterra-table1' has no [physical] part, which predicts power from motion; "
-        "fit one: flightwatt fit --model-kind physical FLIGHT... -o MODEL.toml, of flights that measured their airspeed");
+        "m.toml:14:1: the flight in wind is unknown: the mechanical model has no [physical] part, of flights that "
+        "measured their airspeed; without wind the path is flown at the mean power of the model's flights");
 }
 
 TEST(PathToml, ReadsWaypointsFromFiles) {
@@ -230,7 +237,25 @@ TEST(PathToml, FliesPlansFromTheirFirstPlaceAndAltitude) {
               std::string::npos);
     EXPECT_NE(refusal(plan + "[\"There\"]\n" + area).find("flight_plan and area are two paths"), std::string::npos);
     EXPECT_NE(refusal(area + "radius_m = 50\n").find("radius_m belongs to"), std::string::npos);
-    EXPECT_THROW(read(folder, "wing.toml", path + area, {.circles = 7.0}), NoResultError);
+    const double once_s = read(folder, "wing.toml", path + area).setup.duration_s[Phase::cruise];
+    EXPECT_NEAR(read(folder, "wing.toml", path + area, {.path_times = 0.3}).setup.duration_s[Phase::cruise],
+                0.3 * once_s, 1e-6 * once_s);
+}
+
+TEST(PathToml, FliesThePlansSpeedWhereItStatesNone) {
+    const auto folder = path_folder();
+    write_text(folder / "q.plan", R"({"fileType": "Plan", "version": 1, "mission": {"version": 2, "vehicleType": 1,
+"cruiseSpeed": 12, "plannedHomePosition": [47.0, 8.0, 100], "items": [
+{"type": "SimpleItem", "command": 16, "frame": 3, "params": [0, 0, 0, null, 47.001, 8.0, 60]}]}})");
+    write_text(folder / "w.csv", "east_m,north_m\n0,0\n130,0\n");
+    const auto setup = read(folder, "wing.toml", "[path]\nwaypoints = \"q.plan\"\n").setup;
+    EXPECT_DOUBLE_EQ(setup.cruise_path->plan->path.elements.front().airspeed_m_per_s, 12.0);
+    EXPECT_EQ(setup.notes.front(), "path: airspeed_m_per_s is not stated: 12 m/s, the plan's cruiseSpeed");
+    const auto stated = read(folder, "wing.toml", "[path]\nairspeed_m_per_s = 13\nwaypoints = \"q.plan\"\n").setup;
+    EXPECT_DOUBLE_EQ(stated.cruise_path->plan->path.elements.front().airspeed_m_per_s, 13.0);
+    EXPECT_NE(rejected([&] { read(folder, "wing.toml", "[path]\nwaypoints = \"w.csv\"\n"); }, folder)
+                  .find("airspeed_m_per_s"),
+              std::string::npos);
 }
 
 TEST(PathToml, FliesWaypointsOfALogWithWhateverElseThePathStates) {

@@ -139,7 +139,7 @@ TEST(ScheduleEntries, RefusesGaps) {
               "= true`; "
               "`run = {}` runs nothing");
     EXPECT_EQ(rejected([] { resolve_schedule({part(flight::Phase::takeoff, 0.0, 20.0, 1, 3)}, durations); }),
-              "m.toml:3:1: nothing is scheduled for takeoff from 20 s to 28 s; add an entry with `otherwise "
+              "m.toml:3:1: nothing is scheduled for take-off from 20 s to 28 s; add an entry with `otherwise "
               "= true`; "
               "`run = {}` runs nothing");
     EXPECT_EQ(rejected([] { resolve_schedule({part(flight::Phase::takeoff, 0.0, 28.0, 1, 3)}, durations); }),

@@ -58,6 +58,45 @@ TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
     EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 4: the circle has no end: it is flown once"});
 }
 
+/// A plan of one leg, with these keys of the mission.
+PlannedSpeed speed_of(const std::string& keys, bool is_rotorcraft = false) {
+    auto text = qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60"));
+    text.insert(text.find("\"plannedHome"), keys);
+    return parse_qgc_plan(text, "q.plan", {.radius_m = {}, .is_rotorcraft = is_rotorcraft})
+        .speed.value_or(PlannedSpeed{});
+}
+
+TEST(MissionFiles, HaveTheSpeedOfTheirKindOfVehicle) {
+    const std::string speeds = R"("cruiseSpeed": 17.5, "hoverSpeed": 6, )";
+    for (const int wing : {1, 10, 19, 20, 21, 22})  // with rovers and VTOLs
+        EXPECT_EQ(speed_of(fmt::format("{}\"vehicleType\": {}, ", speeds, wing)).m_per_s, 17.5) << wing;
+    for (const int rotorcraft : {2, 4, 13, 14})
+        EXPECT_EQ(speed_of(fmt::format("{}\"vehicleType\": {}, ", speeds, rotorcraft)).m_per_s, 6.0) << rotorcraft;
+    EXPECT_EQ(speed_of(speeds + "\"vehicleType\": 2, ").source, "the plan's hoverSpeed");
+    EXPECT_EQ(speed_of(speeds, true).source, "the plan's hoverSpeed (no vehicleType: as a rotorcraft)");
+    EXPECT_EQ(speed_of(speeds + "\"vehicleType\": 0, ").source, "the plan's cruiseSpeed (no vehicleType: as a wing)");
+    EXPECT_FALSE(speed_of(speeds).is_default);
+    const auto untouched = speed_of(R"("cruiseSpeed": 15, "vehicleType": 1, )");
+    EXPECT_TRUE(untouched.is_default);
+    EXPECT_EQ(untouched.source, "the plan's cruiseSpeed, QGroundControl's default");
+    for (const auto* none : {"", R"("cruiseSpeed": 0, )", R"("cruiseSpeed": null, )", R"("hoverSpeed": 5, )"})
+        EXPECT_EQ(speed_of(none).m_per_s, 0.0) << none;
+    EXPECT_NE(rejected([] { speed_of(R"("cruiseSpeed": 1500, )"); }).find("cruiseSpeed = 1500"), std::string::npos);
+}
+
+TEST(MissionFiles, FlyAGroundSpeedAsAnAirspeedAndTimedCirclesWithThePlansSpeed) {
+    auto text = qgc(item(19, 3, "60, 0, 50, 1, 47.002, 8.0, 60") + "," + item(178, 2, "1, 8, -1, 0, 0, 0, 0") + "," +
+                    item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(178, 2, "2, 3, -1, 0, 0, 0, 0"));
+    text.insert(text.find("\"plannedHome"), R"("cruiseSpeed": 20, )");
+    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    EXPECT_NEAR(*plan.entries.at(1).circles, 60.0 * 20.0 / 314.159, 1e-3);
+    EXPECT_FALSE(plan.entries.at(1).airspeed_m_per_s) << "the path's";
+    EXPECT_EQ(plan.entries.at(2).airspeed_m_per_s, std::optional(8.0));
+    EXPECT_EQ(plan.not_flown,
+              (std::vector<std::string>{"item 4: the change of speed is not flown: it states no airspeed",
+                                        "item 2: the ground speed is flown as an airspeed, which it is in calm air"}));
+}
+
 TEST(MissionFiles, ReportUnknownCommandsAndJumps) {
     const auto plan =
         parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(177, 2, "1, 5, 0, 0, 0, 0, 0") +
