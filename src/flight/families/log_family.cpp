@@ -117,6 +117,10 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
         }
         const auto instance = instances.numbered ? fmt::format("{}", number) : "";
         auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
+        if (of.compute == if_stated_temperature) {
+            if (track.empty()) continue;
+            track.since_s = track.time_s.front();
+        }
         if (is_of_battery(of.track)) track.device = of.device != nullptr ? of.device : instance;
         tracks.push_back(std::move(track));
     }

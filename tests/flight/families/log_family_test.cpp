@@ -277,7 +277,10 @@ TEST(Batteries, TemperatureIsThatOfThePackWhoseVoltageIsChosen) {
     const auto data = select_tracks(with_temperatures(-3.5, 21.0));
     EXPECT_EQ(data.battery_temperature_c.source, "BAT.Temp");
     EXPECT_EQ(data.battery_temperature_c.value, std::vector(49, -3.5)) << "0 is no temperature";
-    EXPECT_TRUE(select_tracks(with_temperatures(0.0, 21.0)).battery_temperature_c.empty());
+    const auto series = with_temperatures(0.0, 21.0);
+    EXPECT_TRUE(select_tracks(series).battery_temperature_c.empty());
+    EXPECT_EQ(std::ranges::count(series.tracks, "battery_temperature_c", &Track::name), 1) << "no empty column";
+    EXPECT_EQ(truncate_series(series, 9.0).tracks, std::vector<Track>{});
 }
 
 TEST(Batteries, OfPx4WithoutASensorStateNoTemperature) {
