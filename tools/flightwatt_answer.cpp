@@ -4,6 +4,7 @@
 #include "answer/flight_facts.h"
 #include "answer/pack_answer.h"
 #include "answer/pack_ledger.h"
+#include "answer/pack_temperature.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "batch/manifest.h"
@@ -44,6 +45,7 @@ struct AnswerArguments {
     cli::BatchArguments batch;
     answer::Question question;
     std::optional<double> capacity_ah;
+    std::optional<double> temperature_c;
     cli::PackArguments packs;
     std::optional<std::string> wind;
     std::optional<double> home_distance_m;
@@ -75,6 +77,7 @@ answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArgumen
         for (const auto& note : ledger.notes) cli::add_diagnostic(call, {Severity::note, "the pack", note});
         health = ledger.packs;
     }
+    if (arguments.temperature_c) set_temperature(pack, *arguments.temperature_c, health);
     for (const auto& warning : pack.warnings) cli::warn(call, warning);
     if (pack.identified)
         for (const auto& remark : cli::battery_remarks(*pack.identified))
@@ -97,8 +100,8 @@ answer::Answered prediction_error(const mechanical::MechanicalModel& model) {
 /// The values of a failsafe for the mission of the question, or the reason why they are absent.
 void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
                   const mission::MissionSetup& mission, cli::AircraftAnswer& answer) {
-    if (!aircraft.pack.capacity_ah.value) {
-        answer.failsafe_missing = aircraft.pack.capacity_ah.unknown;
+    if (const auto& missing = missing_of(aircraft.pack); !missing.empty()) {
+        answer.failsafe_missing = missing;
         return;
     }
     answer::FailsafeRequest request{.model = mission.mechanical.value(), .battery = mission.battery};
@@ -110,6 +113,10 @@ void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft&
     request.airspeed_m_per_s = answer.endurance.return_airspeed_m_per_s.value;
     try {
         answer.failsafe = make_failsafe_card(request);
+        if (const auto& cold = aircraft.pack.resistance_at_ohm; cold.value)
+            answer.failsafe->grounds.push_back(
+                {cold.basis.starts_with("assumed") ? answer::Ground::assumption : answer::Ground::measured,
+                 fmt::format("resistance at {:g} degC: {}", *arguments.temperature_c, cold.basis)});
     } catch (const NoResultError& error) {
         answer.failsafe_missing = error.what();
     } catch (const InputError& error) {
@@ -142,7 +149,7 @@ std::vector<std::pair<std::string, std::string>> failsafe_texts(const std::optio
 std::string missed_requirement(const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
                                const std::filesystem::path& file) {
     if (!arguments.requirement.text) return "";
-    if (!aircraft.pack.capacity_ah.value) return aircraft.pack.capacity_ah.unknown;
+    if (const auto& missing = missing_of(aircraft.pack); !missing.empty()) return missing;
     const auto prepared = prepare_mission(mission::parse_mission(mission_toml(aircraft, arguments.question), file));
     auto summary = simulate_prepared(prepared, {}, {}).simulation.summary;
     if (arguments.requirement.probability && !summary.undeliverable)
@@ -203,7 +210,9 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     const auto pack = pack_of_folder(inner, arguments, facts, answer.packs);
     const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / answer::pack_name, facts,
                                          pack.answer};
-    const auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
+    auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
+    if (const auto& cold = pack.answer.resistance_at_ohm; cold.value)
+        comment += fmt::format("# resistance at {:g} degC: {}\n", *arguments.temperature_c, cold.basis);
     write_file_atomically(aircraft.battery_file, comment + to_toml(pack.battery));
     answer.pack = pack.answer;
     answer.endurance = answer_endurance(aircraft, arguments.question);
@@ -372,6 +381,8 @@ the payload, wind and airspeed that are asked for.)"};
         "wind", arguments.wind, {.value = "SPEED@DEG"},
         "steady wind in m/s, and the degrees that it comes from: distances are out and back along it and across it, "
         "the way home is against it, and a rotorcraft holds its place in it");
+    options.add("temperature", arguments.temperature_c, {.value = "C", .min = -60.0, .max = 80.0},
+                "of the pack at take-off, in degrees Celsius: what a cold pack changes; default: as flown");
     options.add("home-distance", arguments.home_distance_m,
                 {.value = "M", .min = 0.0, .max = 1e6, .above_min = true, .unit = "m"},
                 "the farthest place from which the failsafe is to return; default: the farthest of the flights");

@@ -45,6 +45,13 @@ std::string power_basis(const KnownAircraft& aircraft, const Question& question)
     return basis;
 }
 
+/// What the pack's resistance rests on at the temperature that is asked for; empty without one.
+std::string resistance_basis(const PackAnswer& pack) {
+    if (!pack.resistance_at_ohm.value) return "";
+    return fmt::format("; the pack's resistance at {:g} degC: {}", *pack.asked_temperature_c,
+                       pack.resistance_at_ohm.basis);
+}
+
 /// The airspeed of the cruise [m/s]: as asked, or as flown.
 Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question) {
     if (const auto asked = mission_airspeed_m_per_s(aircraft, question)) return known(*asked, "as asked");
@@ -170,13 +177,17 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     endurance.notes = setup->notes;
     endurance.power_w = known(mean_cruise_power_w(*setup), basis);
     const double other_s = setup->duration_s[Phase::takeoff] + setup->duration_s[Phase::landing];
-    const auto& capacity = aircraft.pack.capacity_ah;
+    const auto& missing = missing_of(aircraft.pack);
+    const auto time_basis = basis + resistance_basis(aircraft.pack);
+    if (aircraft.pack.resistance_at_ohm.value)
+        endurance.notes.push_back(
+            fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
+                        *aircraft.pack.asked_temperature_c));
     const auto no_95 = no_variability(aircraft);
-    endurance.time_s =
-        capacity.value ? longest(with_cruise_s, other_s, std::nullopt, basis) : unknown(capacity.unknown);
+    endurance.time_s = missing.empty() ? longest(with_cruise_s, other_s, std::nullopt, time_basis) : unknown(missing);
     endurance.time_95_s = !endurance.time_s.value ? unknown(endurance.time_s.unknown)
                           : !no_95.empty()        ? unknown(no_95)
-                                                  : longest(with_cruise_s, other_s, in_95_of_100, basis);
+                                                  : longest(with_cruise_s, other_s, in_95_of_100, time_basis);
     const bool holds_place = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s && question.wind_m_per_s > 0.0;
     const double cruise_s = endurance.time_s.value.value_or(0.0) - other_s;
     if (endurance.time_s.value)

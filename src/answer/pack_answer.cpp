@@ -41,14 +41,14 @@ FoundPack constant_pack(const std::string& reason, const CapacityChoice& capacit
     return pack;
 }
 
-/// The lowest and the highest mean temperature of the flights' air; absent where no log states one.
-std::optional<Interval> air_temperature_c(const battery::BatteryIdentification& identified) {
+/// The lowest and the highest of a temperature of the flights; absent where no log states it.
+std::optional<Interval> range_c(const battery::BatteryIdentification& identified,
+                                std::optional<double> battery::IdentifiedFlight::*temperature_c) {
     std::optional<Interval> range;
     for (const auto& flight : identified.flights) {
-        if (!flight.air_temperature_c) continue;
-        const double mean_c = *flight.air_temperature_c;
-        range =
-            range ? Interval{std::min(range->low, mean_c), std::max(range->high, mean_c)} : Interval{mean_c, mean_c};
+        if (const auto& own_c = flight.*temperature_c)
+            range = range ? Interval{std::min(range->low, *own_c), std::max(range->high, *own_c)}
+                          : Interval{*own_c, *own_c};
     }
     return range;
 }
@@ -73,7 +73,8 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
     pack.answer.resistance_ohm =
         known(identified.fit.resistance_ohm, fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"));
     pack.answer.resistance_interval_ohm = identified.errors.resistance_ohm;
-    pack.answer.air_temperature_c = air_temperature_c(identified);
+    pack.answer.air_temperature_c = range_c(identified, &battery::IdentifiedFlight::air_temperature_c);
+    pack.answer.battery_start_c = range_c(identified, &battery::IdentifiedFlight::battery_start_c);
     pack.answer.known_down_to_percent = identified.observed_min_soc_percent;
     if (auto warning = capacity_warning(identified.battery); !warning.empty())
         pack.warnings.push_back(std::move(warning));

@@ -22,8 +22,18 @@ struct PackAnswer {
     Answered resistance_ohm = {};
     std::optional<Interval> resistance_interval_ohm = {};  ///< 95 %
     std::optional<Interval> air_temperature_c = {};        ///< of the flights' means; absent where no log states one
-    std::optional<double> known_down_to_percent = {};      ///< of its charge; below, the voltage is assumed
+    std::optional<Interval> battery_start_c = {};          ///< of the battery at take-off; likewise
+    std::optional<double> asked_temperature_c = {};        ///< for set_temperature()
+    Answered resistance_at_ohm = {};                       ///< at that temperature
+    std::optional<Interval> resistance_at_interval_ohm = {};
+    std::optional<double> known_down_to_percent = {};  ///< of its charge; below, the voltage is assumed
 };
+
+/// Returns why no time in the air is known with a pack: its capacity, or its resistance at the temperature that is asked
+/// for. Empty where both are known.
+inline const std::string& missing_of(const PackAnswer& pack) {
+    return pack.capacity_ah.value ? pack.resistance_at_ohm.unknown : pack.capacity_ah.unknown;
+}
 
 /// A pack for missions, with the answer about it.
 struct FoundPack {

@@ -206,24 +206,33 @@ class Identifier {
     const LedgerOptions& options_;
 };
 
+/// The temperature by which uses are compared: the battery's where one of them states it, else the air's.
+std::optional<double> battery::IdentifiedFlight::*temperature_of(const std::vector<PackUse>& uses,
+                                                                 const Numbers& numbers) {
+    const bool is_of_battery =
+        std::ranges::any_of(numbers, [&](std::size_t i) { return uses[i].found && uses[i].found->battery_start_c; });
+    return is_of_battery ? &battery::IdentifiedFlight::battery_start_c : &battery::IdentifiedFlight::air_temperature_c;
+}
+
 /// The uses that are like each other in temperature and charge.
 Numbers like_uses(const std::vector<PackUse>& uses, const Numbers& numbers) {
+    const auto temperature_c = temperature_of(uses, numbers);
     std::vector<double> temperatures_c;
     std::vector<double> charges_percent;
     for (const auto i : numbers) {
         if (!uses[i].found || !uses[i].found->resistance) continue;
         charges_percent.push_back(start_charge_percent(uses[i]));
-        if (const auto& air_c = uses[i].found->air_temperature_c) temperatures_c.push_back(*air_c);
+        if (const auto& own_c = (*uses[i].found).*temperature_c) temperatures_c.push_back(*own_c);
     }
     Numbers like;
     if (charges_percent.empty()) return like;
     const double charge_percent = median(charges_percent);
-    const double air_c = temperatures_c.empty() ? 0.0 : median(temperatures_c);
+    const double usual_c = temperatures_c.empty() ? 0.0 : median(temperatures_c);
     for (const auto i : numbers) {
         if (!uses[i].found || !uses[i].found->resistance) continue;
-        const auto& own_c = uses[i].found->air_temperature_c;
+        const auto& own_c = (*uses[i].found).*temperature_c;
         if (std::abs(start_charge_percent(uses[i]) - charge_percent) <= like_charge_percent &&
-            (!own_c || std::abs(*own_c - air_c) <= like_temperature_k))
+            (!own_c || std::abs(*own_c - usual_c) <= like_temperature_k))
             like.push_back(i);
     }
     return like;
@@ -265,7 +274,8 @@ void add_resistance(const std::vector<PackUse>& uses, Pack& pack) {
     pack.resistance = trend_of(uses, like, [](const PackUse& use) { return use.found->resistance->value_ohm; });
     if (like.empty()) return;
     std::vector<double> ohm;
-    std::vector<double> air_c;
+    const auto temperature_c = temperature_of(uses, pack.uses);
+    std::vector<double> temperatures_c;
     std::vector<double> charge_percent;
     double variance = 0.0;
     for (auto k = like.size() - std::min(last_uses, like.size()); k < like.size(); ++k) {
@@ -273,12 +283,15 @@ void add_resistance(const std::vector<PackUse>& uses, Pack& pack) {
         ohm.push_back(found.resistance->value_ohm);
         variance += std::pow(found.resistance->standard_error_ohm, 2);
         charge_percent.push_back(start_charge_percent(uses[like[k]]));
-        if (found.air_temperature_c) air_c.push_back(*found.air_temperature_c);
+        if (const auto& own_c = found.*temperature_c) temperatures_c.push_back(*own_c);
     }
     const auto n = static_cast<double>(ohm.size());
     pack.resistance_ohm = mean(ohm);
     pack.start_charge_percent = mean(charge_percent);
-    if (!air_c.empty()) pack.temperature_c = mean(air_c);
+    if (!temperatures_c.empty()) {
+        pack.temperature_c = mean(temperatures_c);
+        pack.temperature_of = temperature_c == &battery::IdentifiedFlight::battery_start_c ? "battery" : "air";
+    }
     if (ohm.size() == 1) {
         pack.resistance_interval_ohm = uses[like.back()].found->resistance->interval_ohm;
         return;
@@ -448,7 +461,8 @@ std::string describe(const Pack& pack) {
         text += fmt::format(
             "{:.3g} mohm ({:.3g} to {:.3g}{}), ", *pack.resistance_ohm / units::milli,
             pack.resistance_interval_ohm->low / units::milli, pack.resistance_interval_ohm->high / units::milli,
-            pack.temperature_c ? fmt::format(", air {:.0f} degC", *pack.temperature_c) : ", temperature unknown");
+            pack.temperature_c ? fmt::format(", {} {:.0f} degC", pack.temperature_of, *pack.temperature_c)
+                               : ", temperature unknown");
     text += pack.condition.reason;
     if (!pack.mission_until.empty()) text += "; the mission: " + pack.mission_until;
     return text;

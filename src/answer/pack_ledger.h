@@ -12,7 +12,7 @@
 namespace flightwatt::answer {
 
 /// Flights are like each other within so many kelvins, the range of default_scatter_fraction, where logs state a
-/// temperature: 10 K change the resistance of a lithium pack by some 15 to 20 %.
+/// temperature (battery::resistance_fall_per_k).
 inline constexpr double like_temperature_k = 8.0;
 /// And within this of the state of charge at their start: over that range the series resistance is almost flat.
 inline constexpr double like_charge_percent = 35.0;
@@ -62,7 +62,8 @@ struct Pack {
     std::optional<int> cells;
     std::optional<double> resistance_ohm;  ///< mean of the last like uses, five at most
     std::optional<Interval> resistance_interval_ohm;
-    std::optional<double> temperature_c;         ///< of the air in these; unknown where no log states it
+    std::optional<double> temperature_c;         ///< in these; unknown where no log states it
+    std::string temperature_of;                  ///< "battery" (at take-off) or "air"; empty where unknown
     std::optional<double> start_charge_percent;  ///< at their start
     PackTrend resistance;                        ///< of like uses
     std::optional<double> label_ah;

@@ -66,6 +66,9 @@ struct Battery {
     std::shared_ptr<const FlightEstimate> flight_estimate = nullptr;  ///< of a Thévenin circuit; drawn flights share it
 };
 
+/// The fall of ln R a kelvin as a lithium pack warms: 0.015 to 0.045.
+inline constexpr double resistance_fall_per_k = 0.03;
+
 /// The state of a battery.
 struct BatteryState {
     double soc_percent = 100.0;

@@ -128,6 +128,10 @@ void fill_record(const flight::FlightData& data, const PackRecord& part, Dischar
     record.resolution_v = min_difference(record.voltage_v);
     const auto temperature_c = resample(data.air_temperature_c, record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
+    const auto battery_c = resample(data.battery_temperature_c, record.time_s);
+    if (battery_c.empty()) return;
+    record.battery_temperature_c = mean(battery_c);
+    record.battery_start_c = battery_c[record.rest_samples];
 }
 
 }  // namespace

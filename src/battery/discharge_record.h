@@ -17,15 +17,17 @@ struct DischargeRecord {
     std::vector<double> time_s;
     std::vector<double> voltage_v;
     std::vector<double> current_a;
-    std::vector<double> mean_current_a;       ///< from the sample before to this one; the first is its current
-    std::vector<double> charge_ah;            ///< drawn since the log began
-    std::vector<bool> used;                   ///< false: the current is not the battery's load
-    double resting_voltage_v = 0.0;           ///< before the first load
-    double resting_current_a = 0.0;           ///< of the electronics at that time
-    double resolution_v = 0.0;                ///< minimum difference between two voltages
-    std::size_t rest_samples = 0;             ///< before the first load
-    bool is_other_pack = false;               ///< than the record before it of the same log
-    std::optional<double> air_temperature_c;  ///< mean over the record
+    std::vector<double> mean_current_a;           ///< from the sample before to this one; the first is its current
+    std::vector<double> charge_ah;                ///< drawn since the log began
+    std::vector<bool> used;                       ///< false: the current is not the battery's load
+    double resting_voltage_v = 0.0;               ///< before the first load
+    double resting_current_a = 0.0;               ///< of the electronics at that time
+    double resolution_v = 0.0;                    ///< minimum difference between two voltages
+    std::size_t rest_samples = 0;                 ///< before the first load
+    bool is_other_pack = false;                   ///< than the record before it of the same log
+    std::optional<double> air_temperature_c;      ///< mean over the record
+    std::optional<double> battery_temperature_c;  ///< likewise
+    std::optional<double> battery_start_c;        ///< its temperature at the first load
 };
 
 /// The discharges of a log: one, or one a pack where it was changed on the ground.

@@ -146,6 +146,8 @@ std::vector<IdentifiedFlight> identified_flights(const FittedFlights& fitted,
         flight.resistance = fitted.resistances[f];
         flight.capacity = fitted.capacities[f];
         flight.air_temperature_c = record->air_temperature_c;
+        flight.battery_temperature_c = record->battery_temperature_c;
+        flight.battery_start_c = record->battery_start_c;
         flight.samples = record->time_s.size();
         const auto residual = residual_v(fitted.aligned, f);
         flight.unused = flight.samples - static_cast<std::size_t>(residual.size());

@@ -104,6 +104,8 @@ struct IdentifiedFlight {
     std::optional<FlightResistance> resistance;
     std::optional<FlightCapacity> capacity;  ///< with_capacities, where the flight determines it
     std::optional<double> air_temperature_c;
+    std::optional<double> battery_temperature_c;  ///< mean
+    std::optional<double> battery_start_c;        ///< at the first load
     std::size_t samples = 0;
     std::size_t unused = 0;  ///< samples with bursts at idle throttle
     double voltage_rms_v = 0.0;

@@ -34,6 +34,7 @@ std::span<const TrackMember> track_members() {
         {"climb_m_per_s", &D::climb_m_per_s},
         {"roll_deg", &D::roll_deg},
         {"air_temperature_c", &D::air_temperature_c},
+        {"battery_temperature_c", &D::battery_temperature_c},
         {"motor_speed_rpm", &D::motor_speed_rpm},
         {"mass_kg", &D::mass_kg},
         {"rotor_area_m2", &D::rotor_area_m2},
@@ -113,6 +114,7 @@ FlightData select_circuit(FlightData data, std::size_t number) {
     data.voltage_v = {circuit.voltage_v};
     data.current_a = {circuit.current_a};
     data.charge_ah = {circuit.charge_ah};
+    data.battery_temperature_c = {circuit.battery_temperature_c};
     data.energy_wh = {};
     return data;
 }

@@ -30,10 +30,11 @@ struct Circuit {
     Track current_a = {};
     Track charge_ah = {};
     std::optional<double> stated_capacity_ah = {};  ///< of its packs together, if the log's parameters state each
+    Track battery_temperature_c = {};               ///< of the pack with the most power
 };
 
 /// One flight's log with the track that is used for each quantity: what all steps after the selection read. Made by
-/// select_tracks() alone. Voltage, current and charge are those of the first circuit; power and energy are of all.
+/// select_tracks() alone. Voltage, current, charge and temperature are those of the first circuit; power and energy are of all.
 struct FlightData : FlightInfo {
     ChosenTrack altitude_m;
     ChosenTrack throttle_percent;
@@ -56,6 +57,7 @@ struct FlightData : FlightInfo {
     ChosenTrack climb_m_per_s;
     ChosenTrack roll_deg;
     ChosenTrack air_temperature_c;
+    ChosenTrack battery_temperature_c;
     ChosenTrack motor_speed_rpm;
     ChosenTrack mass_kg;
     ChosenTrack rotor_area_m2;

@@ -128,6 +128,7 @@ const std::vector<std::string>& track_names() {
                                                 "climb_m_per_s",
                                                 "roll_deg",
                                                 "air_temperature_c",
+                                                "battery_temperature_c",
                                                 "motor_speed_rpm",
                                                 "mass_kg",
                                                 "rotor_area_m2",

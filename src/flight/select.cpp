@@ -27,7 +27,8 @@ ChosenTrack first_of(const FlightSeries& series, std::string_view name) {
 ChosenTrack cleaned_of_batteries(const FlightSeries& series, const Track& track) {
     constexpr std::size_t enough_samples = 30;
     if (track.time_s.size() < enough_samples) return {within_bounds(track)};
-    return remove_outliers(track, {}, track.name == "voltage_v" ? Track{} : dropout_throttle(series, track));
+    const bool is_of_power = track.name != "voltage_v" && track.name != "battery_temperature_c";
+    return remove_outliers(track, {}, is_of_power ? dropout_throttle(series, track) : Track{});
 }
 
 void prepend(std::vector<std::string>& notes, std::vector<std::string> earlier) {
@@ -53,11 +54,13 @@ void choose_batteries(const FlightSeries& series, BatteryTracks found, FlightDat
         circuit.voltage_v = cleaned_of_batteries(series, circuit.voltage_v);
         circuit.current_a = cleaned_of_batteries(series, circuit.current_a);
         circuit.charge_ah = cleaned_of_batteries(series, circuit.charge_ah);
+        circuit.battery_temperature_c = cleaned_of_batteries(series, circuit.battery_temperature_c);
     }
     data.circuits = std::move(found.circuits);
     data.voltage_v = {data.circuits.front().voltage_v};
     data.current_a = {data.circuits.front().current_a};
     data.charge_ah = {data.circuits.front().charge_ah};
+    data.battery_temperature_c = {data.circuits.front().battery_temperature_c};
     data.stated_capacity_ah = data.circuits.front().stated_capacity_ah;
 }
 
@@ -76,6 +79,7 @@ void choose_voltage_and_current(const FlightSeries& series, FlightData& data) {
     }
     data.charge_ah = first_that_varies(series, "charge_ah");
     data.energy_wh = first_that_varies(series, "energy_wh");
+    data.battery_temperature_c = first_that_varies(series, "battery_temperature_c");
     if (series.monitor_capacities_ah.size() == 1)
         data.stated_capacity_ah = series.monitor_capacities_ah.begin()->second;
 }
@@ -97,9 +101,14 @@ std::vector<Track> other_altitudes(const FlightSeries& series, const Track& chos
     return others;
 }
 
-constexpr ChosenTrack FlightData::*with_own_rule[] = {
-    &FlightData::power_w,   &FlightData::voltage_v,        &FlightData::current_a,           &FlightData::charge_ah,
-    &FlightData::energy_wh, &FlightData::throttle_percent, &FlightData::ground_speed_m_per_s};
+constexpr ChosenTrack FlightData::*with_own_rule[] = {&FlightData::power_w,
+                                                      &FlightData::voltage_v,
+                                                      &FlightData::current_a,
+                                                      &FlightData::charge_ah,
+                                                      &FlightData::energy_wh,
+                                                      &FlightData::throttle_percent,
+                                                      &FlightData::ground_speed_m_per_s,
+                                                      &FlightData::battery_temperature_c};
 
 }  // namespace
 

@@ -69,6 +69,17 @@ TEST_F(AnswerTest, NoTimeWithoutACapacity) {
     }
 }
 
+TEST_F(AnswerTest, TimeOfAColdPackStatesWhatItRestsOn) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.pack.asked_temperature_c = -5.0;
+    aircraft.pack.resistance_at_ohm = known(0.04, "assumed: 3 % a kelvin colder");
+    const auto cold = answer_endurance(aircraft, {});
+    EXPECT_THAT(cold.time_s.basis, HasSubstr("; the pack's resistance at -5 degC: assumed: 3 % a kelvin colder"));
+    EXPECT_THAT(cold.notes, testing::Contains(HasSubstr("capacity is assumed to be unchanged at -5 degC")));
+    aircraft.pack.resistance_at_ohm = unknown("no log states a temperature");
+    EXPECT_EQ(answer_endurance(aircraft, {}).time_s.unknown, "no log states a temperature");
+}
+
 TEST_F(AnswerTest, WindShortensTheWayOutAndBackAndNotTheTime) {
     const auto aircraft = aircraft_of(100.0, 5.0);
     const auto calm = answer_endurance(aircraft, {});

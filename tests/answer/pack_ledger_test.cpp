@@ -134,20 +134,29 @@ TEST(PackLedger, ComparesTheCapacityWithTheLabel) {
     EXPECT_THROW(make_pack_ledger(two_packs(true), {.capacity_ah = 0.5}), UsageError);
 }
 
-TEST(PackLedger, ComparesFlightsOfLikeTemperatureAlone) {
+/// Flights of a pack that is cold, with 2.2 times its resistance, in the later half; the last is warm.
+PackLedger of_winter(std::optional<double> battery::DischargeRecord::*temperature_c) {
     std::vector<PackUse> uses;
     for (std::uint64_t f = 0; f < 12; ++f) {
         const bool is_winter = f >= 6;
         uses.push_back(flown("A", 15.0 * static_cast<double>(f), is_winter ? 2.2 * first_ohm : first_ohm, 80 + f));
-        uses.back().record.air_temperature_c = is_winter && f < 11 ? 2.0 : 20.0;
         if (f == 11) uses.back().record = flown("A", 0.0, first_ohm, 99).record;
+        uses.back().record.air_temperature_c = 20.0;
+        uses.back().record.*temperature_c = is_winter && f < 11 ? 2.0 : 20.0;
     }
-    uses.back().record.air_temperature_c = 20.0;
     for (auto& use : uses) use.record.flight = use.flight;
-    const auto ledger = make_pack_ledger(uses, {.capacity_ah = full_ah});
-    EXPECT_THAT(names(ledger), ElementsAre("A: healthy"));
-    EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9);
-    EXPECT_NEAR(*ledger.packs[0].resistance_ohm, first_ohm, 0.1 * first_ohm);
+    return make_pack_ledger(uses, {.capacity_ah = full_ah});
+}
+
+TEST(PackLedger, ComparesFlightsOfLikeTemperatureAlone) {
+    for (const auto& [temperature_c, of] : {std::pair{&battery::DischargeRecord::air_temperature_c, "air"},
+                                            std::pair{&battery::DischargeRecord::battery_start_c, "battery"}}) {
+        const auto ledger = of_winter(temperature_c);
+        EXPECT_THAT(names(ledger), ElementsAre("A: healthy"));
+        EXPECT_EQ(ledger.packs[0].temperature_of, of);
+        EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9);
+        EXPECT_NEAR(*ledger.packs[0].resistance_ohm, first_ohm, 0.1 * first_ohm);
+    }
 }
 
 TEST(PackLedger, DividesPacksOfOtherNumbersOfCells) {

@@ -35,6 +35,18 @@ TEST(DischargeRecord, TakesWhatTheLogSays) {
     EXPECT_EQ(std::count(record.used.begin(), record.used.end(), false), 0);
 }
 
+TEST(DischargeRecord, HasTheTemperatureOfTheBatteryAtTheFirstLoadAndItsMean) {
+    EXPECT_FALSE(record_of(flight()).battery_temperature_c);
+    auto series = test::series_of(flight());
+    const auto& time_s = series.tracks.front().time_s;
+    series.tracks.push_back({.name = "battery_temperature_c",
+                             .time_s = {time_s.front(), 40.0, time_s.back()},
+                             .value = {18.0, 20.0, 30.0}});
+    const auto record = test::discharge_record(series);
+    EXPECT_NEAR(record.battery_start_c.value(), 20.0, 0.1) << "its first load is at 40 s";
+    EXPECT_NEAR(record.battery_temperature_c.value(), 24.9, 0.2);
+}
+
 TEST(DischargeRecord, IntegratesTheCurrentWhereNothingCounts) {
     auto series = flight();
     const double counted_ah = series.charge_ah.back();

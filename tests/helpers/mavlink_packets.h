@@ -57,15 +57,14 @@ struct MavlinkSender {
                              little_endian(current_ca) + std::string(13, '\0'));
     }
 
-    /// BATTERY_STATUS whose first cells have these voltages [mV].
+    /// BATTERY_STATUS whose first cells have these voltages [mV], with its temperature in 0.01 degC.
     std::string battery(const std::vector<std::uint16_t>& cells_mv, std::int16_t current_ca, std::int32_t consumed_mah,
-                        std::uint8_t id = 0) {
+                        std::uint8_t id = 0, std::int16_t temperature = 32767) {
         std::string cells;
         for (std::size_t i = 0; i < 10; ++i)
             cells += little_endian(i < cells_mv.size() ? cells_mv[i] : std::uint16_t{65535});
-        return packet(147, little_endian(consumed_mah) + little_endian(std::int32_t{-1}) +
-                               little_endian(std::int16_t{32767}) + cells + little_endian(current_ca) +
-                               static_cast<char>(id) + std::string(3, '\1'));
+        return packet(147, little_endian(consumed_mah) + little_endian(std::int32_t{-1}) + little_endian(temperature) +
+                               cells + little_endian(current_ca) + static_cast<char>(id) + std::string(3, '\1'));
     }
 
     std::string position(double boot_s, double height_m) {

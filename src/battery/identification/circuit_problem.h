@@ -36,7 +36,7 @@ inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_fraction = 0.3;
 inline constexpr double slope_change_sd_v = 0.15;
-inline constexpr double warming_sd_wh_per_j = 0.03 / 6.0;
+inline constexpr double warming_sd_wh_per_j = resistance_fall_per_k / 6.0;
 
 /// Free parameters in addition to those in which the voltage is linear: the knots, the rest offsets, the RC resistance
 /// and one series resistance. The initial charge of the reference is always fixed. With the time constant the warming

@@ -144,6 +144,29 @@ std::string speeds_line(const Endurance& endurance) {
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 
+std::string mohm_text(const Answered& ohm, const std::optional<Interval>& interval) {
+    auto text = fmt::format("{:.3g} mOhm", ohm.value.value_or(0.0) * mohm_per_ohm);
+    if (interval)
+        text += fmt::format(" ({:.3g} to {:.3g})", interval->low * mohm_per_ohm, interval->high * mohm_per_ohm);
+    return text;
+}
+
+/// "; at 21 to 29 degC of the battery at take-off (measured)", and the resistance at the temperature that is asked for.
+std::string temperature_text(const PackAnswer& pack) {
+    const auto& [battery_c, air_c] = std::tie(pack.battery_start_c, pack.air_temperature_c);
+    auto text =
+        battery_c ? fmt::format("; at {:.0f} to {:.0f} degC of the battery at take-off (measured)", battery_c->low,
+                                battery_c->high)
+        : air_c ? fmt::format("; in air of {:.0f} to {:.0f} degC, other temperatures unknown", air_c->low, air_c->high)
+                : std::string("; temperature unknown: the logs state none");
+    if (!pack.asked_temperature_c) return text;
+    const auto& asked = pack.resistance_at_ohm;
+    return text + fmt::format("; at {:g} degC {}", *pack.asked_temperature_c,
+                              asked.value ? fmt::format("{}, {}", mohm_text(asked, pack.resistance_at_interval_ohm),
+                                                        asked.basis)
+                                          : "unknown: " + asked.unknown);
+}
+
 std::string pack_line(const PackAnswer& pack) {
     std::string text = pack.capacity_ah.value
                            ? fmt::format("{:.3g} Ah {}", *pack.capacity_ah.value, pack.capacity_ah.basis)
@@ -151,13 +174,8 @@ std::string pack_line(const PackAnswer& pack) {
     if (const auto& flights = pack.flights_capacity_ah)
         text += fmt::format("; the flights indicate {:.3g} to {:.3g} Ah", flights->low, flights->high);
     if (!pack.resistance_ohm.value) return text + "; resistance unknown: " + pack.resistance_ohm.unknown;
-    text += fmt::format("; {:.3g} mOhm", *pack.resistance_ohm.value * mohm_per_ohm);
-    if (const auto& interval = pack.resistance_interval_ohm)
-        text += fmt::format(" ({:.3g} to {:.3g})", interval->low * mohm_per_ohm, interval->high * mohm_per_ohm);
-    const auto& air_c = pack.air_temperature_c;
-    return text + (air_c ? fmt::format("; in air of {:.0f} to {:.0f} degC, other temperatures unknown", air_c->low,
-                                       air_c->high)
-                         : std::string("; temperature unknown: not read from the logs"));
+    text += "; " + mohm_text(pack.resistance_ohm, pack.resistance_interval_ohm);
+    return text + temperature_text(pack);
 }
 
 /// The health of each pack; empty where no flight shows one.
@@ -249,6 +267,11 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
               csv_column{"resistance_ohm"}, not_in_json{}),
         field("resistance_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_interval_ohm)),
         field("air_temperature_c_range", at(&R::pack, &PackAnswer::air_temperature_c), "means of the flights"),
+        field("battery_temperature_c_range", at(&R::pack, &PackAnswer::battery_start_c), "of the flights' take-offs"),
+        field("temperature_c", at(&R::pack, &PackAnswer::asked_temperature_c), "asked for; null: as flown",
+              csv_column{}),
+        field("resistance_at_temperature_ohm", at(&R::pack, &PackAnswer::resistance_at_ohm), "at that temperature"),
+        field("resistance_at_temperature_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_at_interval_ohm)),
         field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
         field("csv_prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "",
               csv_column{"prediction_error_percent"}, not_in_json{}),

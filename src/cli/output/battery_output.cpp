@@ -18,17 +18,20 @@ Fields<ResistanceScatter> record_fields(const ResistanceScatter*) {
 Fields<IdentifiedFlight> record_fields(const IdentifiedFlight*) {
     using R = IdentifiedFlight;
     using Own = FlightResistance;
-    return {field("flight", &R::flight, "name of the flight", column{}),
-            field("resting_voltage_v", &R::resting_voltage_v, "before take-off", column{"at rest V", ".3f"}),
-            field("initial_depletion_ah", &R::initial_depletion_ah, "missing at the start", column{"missing Ah"}),
-            field("initial_depletion_ah_interval_95", &R::initial_charge_interval_ah, "", column{"low Ah|high Ah"}),
-            field("drawn_ah", &R::drawn_ah, "charge drawn in flight", column{"drawn Ah"}),
-            field("resistance_ohm", at(&R::resistance, &Own::value_ohm), "by this flight alone", column{"own ohm"}),
-            field("resistance_ohm_interval_95", at(&R::resistance, &Own::interval_ohm), "", column{"low ohm|high ohm"}),
-            field("samples", &R::samples, "samples of the fit", column{}),
-            field("unused_samples", &R::unused, "samples with a current that is not the motor's", column{"unused"}),
-            field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "residual", column{"fitted mV"}),
-            field("air_temperature_c", &R::air_temperature_c, "mean air temperature", column_if_any("air C"))};
+    return {
+        field("flight", &R::flight, "name of the flight", column{}),
+        field("resting_voltage_v", &R::resting_voltage_v, "before take-off", column{"at rest V", ".3f"}),
+        field("initial_depletion_ah", &R::initial_depletion_ah, "missing at the start", column{"missing Ah"}),
+        field("initial_depletion_ah_interval_95", &R::initial_charge_interval_ah, "", column{"low Ah|high Ah"}),
+        field("drawn_ah", &R::drawn_ah, "charge drawn in flight", column{"drawn Ah"}),
+        field("resistance_ohm", at(&R::resistance, &Own::value_ohm), "by this flight alone", column{"own ohm"}),
+        field("resistance_ohm_interval_95", at(&R::resistance, &Own::interval_ohm), "", column{"low ohm|high ohm"}),
+        field("samples", &R::samples, "samples of the fit", column{}),
+        field("unused_samples", &R::unused, "samples with a current that is not the motor's", column{"unused"}),
+        field("voltage_rms_mv", at(&R::voltage_rms_v, units::mv_from_v), "residual", column{"fitted mV"}),
+        field("air_temperature_c", &R::air_temperature_c, "mean air temperature", column_if_any("air C")),
+        field("battery_temperature_c", &R::battery_temperature_c, "its mean temperature", column_if_any("battery C")),
+        field("battery_start_c", &R::battery_start_c, "its temperature at take-off", column_if_any("at take-off C"))};
 }
 
 Fields<LeaveOneOutCheck> record_fields(const LeaveOneOutCheck*) {

@@ -44,12 +44,15 @@ void add_monitor(const char* message, const char* device, std::vector<FamilyTrac
     constexpr auto latest = Merge::latest;
     const FamilySource voltage{"Volt", "V", "0.01V"};
     const FamilySource current{"Curr", "A", "0.01A"};
-    tracks.insert(tracks.end(),
-                  {{"power_w", message, {voltage, current}, mean, product, nullptr, nullptr, device},
-                   {"voltage_v", message, {voltage}, mean, nullptr, nullptr, nullptr, device},
-                   {"current_a", message, {current}, mean, nullptr, nullptr, nullptr, device},
-                   {"charge_ah", message, {{"CurrTot", "mAh"}}, latest, nullptr, nullptr, nullptr, device},
-                   {"energy_wh", message, {{"EnrgTot", "Wh"}}, latest, nullptr, nullptr, nullptr, device}});
+    const FamilySource temperature{"Temp", "degC"};
+    tracks.insert(
+        tracks.end(),
+        {{"power_w", message, {voltage, current}, mean, product, nullptr, nullptr, device},
+         {"voltage_v", message, {voltage}, mean, nullptr, nullptr, nullptr, device},
+         {"current_a", message, {current}, mean, nullptr, nullptr, nullptr, device},
+         {"charge_ah", message, {{"CurrTot", "mAh"}}, latest, nullptr, nullptr, nullptr, device},
+         {"energy_wh", message, {{"EnrgTot", "Wh"}}, latest, nullptr, nullptr, nullptr, device},
+         {"battery_temperature_c", message, {temperature}, mean, if_stated_temperature, nullptr, nullptr, device}});
 }
 
 /// An ESC: ESC with instances, or ESC1 to ESC8 until 4.0.

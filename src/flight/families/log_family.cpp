@@ -18,7 +18,8 @@ using telemetry::MessageTable;
 
 /// Tracks of which each battery has its own.
 bool is_of_battery(std::string_view track) {
-    constexpr std::string_view names[] = {"voltage_v", "current_a", "power_w", "charge_ah", "energy_wh"};
+    constexpr std::string_view names[] = {"voltage_v", "current_a", "power_w",
+                                          "charge_ah", "energy_wh", "battery_temperature_c"};
     return std::ranges::find(names, track) != std::end(names);
 }
 
@@ -116,6 +117,10 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
         }
         const auto instance = instances.numbered ? fmt::format("{}", number) : "";
         auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
+        if (of.compute == if_stated_temperature) {
+            if (track.empty()) continue;
+            track.since_s = track.time_s.front();
+        }
         if (is_of_battery(of.track)) track.device = of.device != nullptr ? of.device : instance;
         tracks.push_back(std::move(track));
     }
@@ -166,6 +171,10 @@ double correct_week_rollover(double utc_s) {
     constexpr double overflow_s = 1024.0 * 604'800.0;
     if (!(utc_s >= gps_epoch_s)) return no_value;
     return utc_s + overflow_s * std::max(std::ceil((first_logs_s - utc_s) / overflow_s), 0.0);
+}
+
+double if_stated_temperature(const std::vector<double>& row) {
+    return row[0] == 0.0 || row[0] == -1.0 ? no_value : row[0];
 }
 
 double product(const std::vector<double>& values) { return values[0] * values[1]; }

@@ -61,6 +61,9 @@ struct LogFamily {
 /// Returns the product of two values, such as voltage and current.
 double product(const std::vector<double>& values);
 
+/// Returns a battery's temperature [degC]; NaN for exactly 0 or -1, with which autopilots state that nothing measures it.
+double if_stated_temperature(const std::vector<double>& row);
+
 /// Returns the kind of vehicle by MAVLink's number of its type, as FlightInfo::firmware; empty for others, as VTOLs.
 std::string firmware_of_type(double mav_type);
 

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double unknown_16_bit = 65535.0;
 constexpr double unknown = -1.0;
+constexpr double no_temperature = 32767.0;
 constexpr std::size_t cells = 10;
 constexpr std::size_t further_cells = 4;
 
@@ -80,6 +81,11 @@ std::vector<FamilyTrack> mavlink_tracks() {
         {"current_a", "BATTERY_STATUS", {pack_current}},
         {"charge_ah", "BATTERY_STATUS", {{"current_consumed", "mAh", nullptr, unknown}}, latest},
         {"energy_wh", "BATTERY_STATUS", {{"energy_consumed", "100J", nullptr, unknown}}, latest},
+        {"battery_temperature_c",
+         "BATTERY_STATUS",
+         {{"temperature", "0.01degC", nullptr, no_temperature}},
+         mean,
+         if_stated_temperature},
         {"power_w", "SYS_STATUS", {pack_voltage, pack_current}, mean, product},
         {"voltage_v", "SYS_STATUS", {pack_voltage}},
         {"current_a", "SYS_STATUS", {pack_current}},

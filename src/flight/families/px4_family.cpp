@@ -63,6 +63,7 @@ const std::vector<FamilyTrack>& px4_tracks() {
         {"voltage_v", "battery_status", {{"voltage_v", "V"}}},
         {"current_a", "battery_status", {current}},
         {"charge_ah", "battery_status", {{"discharged_mah", "mAh", nullptr, no_sensor}}, latest},
+        {"battery_temperature_c", "battery_status", {{"temperature", "degC"}}, mean, if_stated_temperature},
         {"east_m", "vehicle_local_position", {{"y", "m"}}},
         {"north_m", "vehicle_local_position", {{"x", "m"}}},
         {"airspeed_m_per_s", "airspeed_validated", {{"calibrated_airspeed_m_s", "m/s"}}},

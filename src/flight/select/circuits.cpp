@@ -39,6 +39,7 @@ struct Monitor {
     Track current_a;
     Track charge_ah;
     Track energy_wh;
+    Track battery_temperature_c;
     double mean_w = 0.0;
     double mean_v = 0.0;
     double mean_a = 0.0;
@@ -76,7 +77,8 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
                         track_of(series, power, "voltage_v"),
                         track_of(series, power, "current_a"),
                         track_of(series, power, "charge_ah"),
-                        track_of(series, power, "energy_wh")};
+                        track_of(series, power, "energy_wh"),
+                        track_of(series, power, "battery_temperature_c")};
         if (monitor.power_w.empty() || monitor.current_a.empty() || monitor.voltage_v.empty()) continue;
         const auto id = power.device.empty() ? std::string("0") : power.device;
         const auto kind = series.monitor_kinds.find(id);
@@ -224,8 +226,10 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
                     packs.front()->voltage_v,
                     sum_of(devices_of(packs, &Monitor::current_a), unused),
                     counter_of(packs, &Monitor::charge_ah, power),
-                    stated_capacity_ah(packs)};
+                    stated_capacity_ah(packs),
+                    packs.front()->battery_temperature_c};
     circuit.voltage_v.device.clear();
+    circuit.battery_temperature_c.device.clear();
     if (!circuit.power_w.empty()) circuit.mean_power_w = mean(circuit.power_w.value);
     return circuit;
 }

@@ -64,9 +64,17 @@ TEST(AnswerText, DirectionOfTheWindMakesTheCourses) {
 TEST(AnswerText, TemperatureOfThePackIsThatOfTheLogs) {
     auto answer = answered();
     answer.pack.resistance_ohm = known(0.02, "measured on 3 flights");
-    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; temperature unknown: not read from the logs"));
+    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; temperature unknown: the logs state none"));
     answer.pack.air_temperature_c = Interval{4.0, 12.0};
     EXPECT_THAT(text_of(answer), HasSubstr("in air of 4 to 12 degC, other temperatures unknown"));
+    answer.pack.battery_start_c = Interval{21.0, 29.0};
+    EXPECT_THAT(text_of(answer), HasSubstr("20 mOhm; at 21 to 29 degC of the battery at take-off (measured)\n"));
+    answer.pack.asked_temperature_c = -5.0;
+    answer.pack.resistance_at_ohm = known(0.04, "assumed: 3 %");
+    answer.pack.resistance_at_interval_ohm = Interval{0.02, 0.06};
+    EXPECT_THAT(text_of(answer), HasSubstr("(measured); at -5 degC 40 mOhm (20 to 60), assumed: 3 %"));
+    answer.pack.resistance_at_ohm = answer::unknown("no log states it");
+    EXPECT_THAT(text_of(answer), HasSubstr("(measured); at -5 degC unknown: no log states it"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "helpers/test_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <utility>
@@ -256,6 +257,48 @@ TEST(Batteries, InParallelAreSummed) {
     EXPECT_THAT(warnings_of(series),
                 Contains("the power is the sum over the batteries battery_status 0 (22.00 V, 10.05 "
                          "A) and battery_status 1 (22.00 V, 5.00 A)"));
+}
+
+/// A log of two batteries of 10 A and 5 A with these temperatures, the first of which is 0 in one message.
+FlightSeries with_temperatures(double first_c, double second_c) {
+    auto log = test::dataflash_format(1, "BAT", "QBffc", "TimeUS,Instance,Volt,Curr,Temp", 19);
+    for (unsigned i = 0; i < 50; ++i)
+        for (const std::uint8_t battery : {0, 1}) {
+            const double temperature_c = battery == 0 ? (i == 7 ? 0.0 : first_c) : second_c;
+            log += test::dataflash_message(
+                1, test::little_endian(std::uint64_t{10'000'000} + 100'000 * i) + test::little_endian(battery) +
+                       test::little_endian(22.0F) + test::little_endian(battery == 0 ? 10.0F : 5.0F) +
+                       test::little_endian(static_cast<std::int16_t>(100.0 * temperature_c)));
+        }
+    return series_of(log);
+}
+
+TEST(Batteries, TemperatureIsThatOfThePackWhoseVoltageIsChosen) {
+    const auto data = select_tracks(with_temperatures(-3.5, 21.0));
+    EXPECT_EQ(data.battery_temperature_c.source, "BAT.Temp");
+    EXPECT_EQ(data.battery_temperature_c.value, std::vector(49, -3.5)) << "0 is no temperature";
+    const auto series = with_temperatures(0.0, 21.0);
+    EXPECT_TRUE(select_tracks(series).battery_temperature_c.empty());
+    EXPECT_EQ(std::ranges::count(series.tracks, "battery_temperature_c", &Track::name), 1) << "no empty column";
+    EXPECT_EQ(truncate_series(series, 9.0).tracks, std::vector<Track>{});
+}
+
+TEST(Batteries, OfPx4WithoutASensorStateNoTemperature) {
+    const auto temperature_c = [](float stated_c) {
+        auto log = test::ulog_header() +
+                   test::ulog_message('F',
+                                      "battery_status:uint64_t timestamp;float voltage_v;float current_a;"
+                                      "float temperature;") +
+                   test::ulog_subscription(0, 7, "battery_status");
+        for (unsigned i = 0; i < 20; ++i)
+            log += test::ulog_message(
+                'D', test::little_endian(std::uint16_t{7}) +
+                         test::little_endian(std::uint64_t{10'000'000} + 200'000 * i) + test::little_endian(22.0F) +
+                         test::little_endian(10.0F + 0.1F * static_cast<float>(i)) + test::little_endian(stated_c));
+        return first_value(select_tracks(series_of(log, "x.ulg")).battery_temperature_c);
+    };
+    EXPECT_EQ(temperature_c(21.5F), 21.5);
+    for (const float none : {0.0F, -1.0F, std::nanf("")}) EXPECT_FALSE(temperature_c(none)) << none;
 }
 
 TEST(Batteries, SpareInputsAndCircuitsAreNamed) {

@@ -61,6 +61,19 @@ TEST(MavlinkFamily, AddsTheVoltagesOfCellsThatAreKnown) {
     EXPECT_THAT(sources_of(series, "charge_ah"), testing::ElementsAre("BATTERY_STATUS.current_consumed"));
 }
 
+TEST(MavlinkFamily, BatteryStatesItsTemperatureOrNone) {
+    const auto temperature_c = [](std::int16_t stated) {
+        test::MavlinkSender vehicle;
+        const auto series =
+            series_of(vehicle, [&](int i) { return std::vector{vehicle.battery({12'000}, 1'000, 10 * i, 0, stated)}; });
+        return select_tracks(series).battery_temperature_c;
+    };
+    EXPECT_NEAR(first_value(temperature_c(-1250)).value(), -12.5, 1e-9);
+    EXPECT_EQ(temperature_c(2150).source, "BATTERY_STATUS.temperature");
+    EXPECT_TRUE(temperature_c(32767).empty());
+    EXPECT_TRUE(temperature_c(0).empty());
+}
+
 TEST(MavlinkFamily, TakesTheStatusWhereTheBatteryHasNoCurrent) {
     test::MavlinkSender vehicle;
     const auto series = series_of(vehicle, [&](int) {

@@ -57,7 +57,8 @@ TEST(PhysicalBounds, LeaveOutWhatLiesBeyondThem) {
                                   {"wind_east_m_per_s", -100.0, 100.0},
                                   {"wind_north_m_per_s", -100.0, 100.0},
                                   {"climb_m_per_s", -300.0, 300.0},
-                                  {"air_temperature_c", -80.0, 100.0}};
+                                  {"air_temperature_c", -80.0, 100.0},
+                                  {"battery_temperature_c", -80.0, 200.0}};
     for (const auto& [name, low, high] : all) {
         SCOPED_TRACE(name);
         const auto kept = [name = name, low = low](double value) {
