@@ -13,8 +13,9 @@ const fitWidth = vm.runInThisContext(`(${await script("fit_width.js")})`);
 // The same files as in the page.
 for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
 const { vega, vegaLite } = globalThis;
-const letter = 0.54; // width of a letter [type sizes]; Vega's estimate of 0.8 leaves gaps and cuts names
-vega.textMetrics.width = ({ fontSize = 11 }, text) => letter * fontSize * String(text ?? "").length;
+const letter = 0.54; // mean width of a letter [type sizes]; Vega's estimate of 0.8 leaves gaps and cuts names
+const wide = /[\dA-Zmw%+−]/g;
+vega.textMetrics.width = ({ fontSize = 11, limit }, text) => Math.min(limit ? 1.1 * limit : Infinity, fontSize * (letter * String(text ?? "").length + 0.1 * (String(text ?? "").match(wide)?.length ?? 0)));
 const typed = letter * (32 / 3); // of a letter in papers [px]
 
 /** Without the transparent points of the page's tooltips, which only enlarge the file. */
@@ -44,10 +45,11 @@ function inMinutes(part, isLong, panel = 0) {
 
 const titleOf = (panel, axis) => [panel, ...(panel.layer ?? [])].find(({ encoding }) => encoding?.[axis])?.encoding[axis].title;
 
-/** Takes the name of an axis from a panel. */
-function untitle(panel, axis) {
-  if (panel.encoding?.[axis]) panel.encoding[axis].title = null;
-  panel.layer?.forEach((layer) => untitle(layer, axis));
+/** Takes the name of an axis from a panel, and its labels where another panel has the same. */
+function untitle(panel, axis, isShared) {
+  const channel = panel.encoding?.[axis];
+  if (channel) Object.assign(channel, { title: null }, isShared && { axis: { ...channel.axis, labels: false, ticks: false } });
+  panel.layer?.forEach((layer) => untitle(layer, axis, isShared));
 }
 
 /** With as many ticks as have room for their labels, units below the names of low panels, and legends in few rows. */
@@ -56,21 +58,22 @@ function readable(part, size = {}) {
   const changed = inside(part, (value) => readable(value, here));
   if (part?.type === "text" && part.limit) changed.limit = part.limit * (0.8 / letter); // by Vega's estimate
   if (Array.isArray(part?.concat)) {
-    changed.spacing = { row: 54, column: 46 };
+    const isShared = (axis) => part.resolve?.scale?.[axis] === "shared";
+    changed.spacing = { row: !isShared("x") ? 54 : width < 420 ? 26 : 40, column: isShared("y") ? 14 : 46 };
     const titles = part.concat.map((panel) => [titleOf(panel, "x"), titleOf(panel, "y")]);
     changed.concat.forEach((panel, i) => {
       // An axis like that of the panel below, or at its left, has no name of its own.
-      if (titles[i + part.columns]?.[0] === titles[i][0]) untitle(panel, "x");
-      if (i % part.columns > 0 && titles[i - 1][1] === titles[i][1]) untitle(panel, "y");
+      if (titles[i + part.columns]?.[0] === titles[i][0]) untitle(panel, "x", isShared("x"));
+      if (i % part.columns > 0 && titles[i - 1][1] === titles[i][1]) untitle(panel, "y", isShared("y"));
     });
   }
   if (part?.vconcat) {
     changed.spacing = Math.min(part.spacing ?? 12, 12);
-    part.vconcat.forEach((panel, i) => i > 0 && titleOf(panel, "x") === titleOf(part.vconcat[i - 1], "x") && untitle(changed.vconcat[i - 1], "x"));
+    part.vconcat.forEach((panel, i) => i > 0 && titleOf(panel, "x") === titleOf(part.vconcat[i - 1], "x") && untitle(changed.vconcat[i - 1], "x", true));
   }
   for (const [name, channel] of Object.entries(part?.encoding ?? {})) {
     const now = changed.encoding[name];
-    if (channel.type === "quantitative" && (name === "x" ? here.width : name === "y" && here.height > 0)) {
+    if (["quantitative", "temporal"].includes(channel.type) && (name === "x" ? here.width : name === "y" && here.height > 0)) {
       now.axis = { tickCount: Math.max(2, Math.floor(name === "x" ? here.width / 50 : here.height / 28)), labelSeparation: name === "x" ? 8 : 2, ...channel.axis };
       if (name === "y" && channel.title?.length * typed > here.height) now.title = channel.title.split(/ (?=\[)/);
     }
@@ -83,11 +86,12 @@ function readable(part, size = {}) {
   return changed;
 }
 
-/** With panels of `factor` times their height, 40 px at least; squares remain squares. */
+/** With panels of `factor` times their height, 36 px at least, and rows of 12; squares remain squares. */
 function flattened(part, factor) {
   const inner = Object.fromEntries(["concat", "vconcat", "hconcat"].filter((key) => part[key]).map((key) => [key, part[key].map((panel) => flattened(panel, factor))]));
+  if (part.height?.step) return { ...part, height: { step: Math.max(12, Math.floor(part.height.step * factor)) } };
   if (typeof part.height !== "number") return { ...part, ...inner };
-  const height = Math.max(Math.min(40, part.height), Math.floor(part.height * factor));
+  const height = Math.max(Math.min(36, part.height), Math.floor(part.height * factor));
   return { ...part, ...inner, height, width: part.width === part.height ? height : part.width };
 }
 
@@ -96,21 +100,21 @@ async function viewOf(spec) {
   return new vega.View(vega.parse(vegaLite.compile(still(spec), { logger }).spec), { renderer: "none", logger }).runAsync();
 }
 
-/** The specification with times of more than five minutes in minutes. */
+/** The specification with times of more than two minutes in minutes. */
 async function withMinutes(spec) {
   const view = await viewOf(spec);
   const spanOf = (panel) => {
-    const [low, high] = view.scale(spec.concat ? `concat_${panel}_x` : "x").domain();
+    const [low, high] = view.scale(spec.concat && spec.resolve?.scale?.x !== "shared" ? `concat_${panel}_x` : "x").domain();
     return high - low;
   };
-  const changed = inMinutes(spec, (panel) => spanOf(panel) > 300);
+  const changed = inMinutes(spec, (panel) => spanOf(panel) > 120);
   view.finalize();
   return changed;
 }
 
 async function render(wanted, room, factor) {
   const { config } = wanted; // legends in rows
-  const spec = width < 420 ? { ...wanted, config: { ...config, legend: { ...config.legend, layout: { top: { direction: "vertical", anchor: "start", margin: 2 } } } } } : wanted;
+  const spec = width < 420 ? { ...wanted, config: { ...config, legend: { ...config.legend, layout: { top: { direction: "vertical", anchor: "start", margin: 2, bounds: "full" } } } } } : wanted;
   const view = await viewOf(readable(flattened(fitWidth(spec, room, width), factor)));
   const svg = await view.toSVG();
   view.finalize();
@@ -120,18 +124,19 @@ async function render(wanted, room, factor) {
 
 for (const name of names) {
   const spec = await withMinutes(JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8")));
-  // The size of axes and legends is known after drawing: a figure that is too large is drawn again with less room.
+  // The size of axes and legends is known after drawing: a figure of another size is drawn again with less or more room.
   let room = width;
   let factor = 1;
   let drawn = await render(spec, room, factor);
   let widest = Infinity; // what smaller panels do not make smaller stays
   let tallest = Infinity;
   for (let trial = 0; trial < 12; ++trial) {
-    if (drawn.wide > width && drawn.wide < widest) {
-      widest = drawn.wide;
+    if ((drawn.wide > width && drawn.wide < widest) || (trial === 0 && drawn.wide < width)) {
+      if (drawn.wide > width) [widest, room] = [drawn.wide, room - 4]; // names at the side get a part of the room
       room -= drawn.wide - width;
     } else if (height > 0 && drawn.tall > height && drawn.tall < tallest) {
-      [widest, tallest] = [Infinity, drawn.tall];
+      if (drawn.wide <= width) widest = Infinity;
+      tallest = drawn.tall;
       factor *= Math.max(0.5, 1 - (1.3 * (drawn.tall - height)) / drawn.tall);
     } else break;
     drawn = await render(spec, room, factor);

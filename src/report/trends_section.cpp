@@ -6,6 +6,7 @@
 #include "flight/flight_identity.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
@@ -27,17 +28,17 @@ constexpr double metres_per_km = 1000.0;
 constexpr std::array<TrendQuantity, 6> quantities{{
     {"energy_wh_per_min", "energy [Wh/min]",
      [](const FlightTrendData& f) { return per(f.facts.energy_wh, units::minute_from_second(f.facts.in_air_s)); }},
-    {"energy_wh_per_km", "ground [Wh/km]",
+    {"energy_wh_per_km", "over ground [Wh/km]",
      [](const FlightTrendData& f) { return per(f.facts.energy_wh, f.facts.distance_m.value_or(0.0) / metres_per_km); }},
-    {"energy_wh_per_air_km", "air [Wh/km]",
+    {"energy_wh_per_air_km", "through air [Wh/km]",
      [](const FlightTrendData& f) {
          return per(f.facts.energy_wh, f.facts.air_distance_m.value_or(0.0) / metres_per_km);
      }},
-    {"cruise_power_w", "cruise [W]",
+    {"cruise_power_w", "cruise power [W]",
      [](const FlightTrendData& f) { return f.facts.mean_power_w[flight::Phase::cruise]; }},
-    {"resistance_ohm", "pack [ohm]",
+    {"resistance_ohm", "resistance [ohm]",
      [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
-    {"capacity_percent", "pack [% of its mean]", [](const FlightTrendData& f) { return f.capacity_percent; }},
+    {"capacity_percent", "capacity [% of mean]", [](const FlightTrendData& f) { return f.capacity_percent; }},
 }};
 
 std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
@@ -46,6 +47,7 @@ std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
     return names;
 }
 
+constexpr double relative_margin = 0.05;  // of values that are all the same
 constexpr double ms_per_day = 86400.0 * 1000.0;
 
 std::string title_of(const AircraftTrend& trend) {
@@ -73,7 +75,11 @@ VegaJson trend_panel(const AircraftTrend& trend) {
              {slope.per_day, "median slope"}, {slope.low_per_day, "low, 95 %"}, {slope.high_per_day, "high, 95 %"}})
         for (const double day : {range.min, range.max})
             slopes.add({day * ms_per_day, middle + per_day * (day - middle_day)}, {name});
-    return {{"flights", flights.json()}, {"slopes", slopes.json()}, {"title", title_of(trend)}};
+    // The interval of few flights is cut: it would hide them.
+    const auto [low, high] = std::ranges::minmax(trend.values, {}, &batch::DatedValue::value);
+    const double margin = std::max(high.value - low.value, relative_margin * std::abs(high.value));
+    const VegaJson domain{low.value - margin, high.value + margin};
+    return {{"flights", flights.json()}, {"slopes", slopes.json()}, {"domain", domain}, {"title", title_of(trend)}};
 }
 
 /// The known trends of one aircraft.

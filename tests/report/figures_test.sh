@@ -17,7 +17,7 @@ command -v rsvg-convert >/dev/null || skip rsvg-convert
 
 rm -rf "$scratch"
 mkdir -p "$scratch"
-"$bin/flightwatt-batch" "$source/logs/opterra_synthetic_01.data" "$source/logs/opterra_synthetic_02.data" -o "$scratch/out" >/dev/null 2>&1
+"$bin/flightwatt-batch" "$source"/logs/*.data -o "$scratch/out" >/dev/null 2>&1
 printed=$("$bin/flightwatt-report" "$scratch/out" "$source"/missions/paper/*.toml --figures "$scratch/figures" 2>&1)
 echo "$printed"
 [[ $printed == *": .vl.json, .svg, .pdf" ]]
@@ -43,7 +43,7 @@ PYTHON
 # In one column and in two, figures are landscape, with type of 8 points, 10.67 pixels; no text is clipped or over another,
 # no tick without its label, and long times are in minutes.
 for width in 3.5 7; do
-    "$bin/flightwatt-report" "$scratch/out" "$source/missions/paper/phased.toml" "$source/missions/paper/plan.toml" --figures "$scratch/column" --figure-width "${width}in" --figure-font serif 2>/dev/null
+    "$bin/flightwatt-report" "$scratch/out" "$source"/missions/paper/{phased,plan,adaptive,invariant-5.8fps-32bit,mechanical-only}.toml --figures "$scratch/column" --figure-width "${width}in" --figure-font serif 2>/dev/null
     python3 "$(dirname "$0")/figure_texts.py" "$(python3 -c "print(96 * $width)")" "$scratch"/column/*.svg
     python3 - "$scratch/column" <<'PYTHON'
 import glob, os, re, sys

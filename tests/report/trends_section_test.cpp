@@ -129,7 +129,7 @@ TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
     const auto trends = estimate_trends(flights);
     EXPECT_THAT(to_text(table_of(trends)), HasSubstr("-60"));
     EXPECT_THAT(trends_section(trends, {})->figures.front().description,
-                HasSubstr("pack [% of its mean]: 100, -60 in 30 days (-60 to -60), falls"));
+                HasSubstr("capacity [% of mean]: 100, -60 in 30 days (-60 to -60), falls"));
 }
 
 TEST(PackWear, TakesTheCapacityThatIsKnown) {

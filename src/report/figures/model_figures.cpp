@@ -111,12 +111,14 @@ Figure model_figure(const mechanical::MechanicalModel& model, const flight::PerP
     const auto& cruise = bands[flight::Phase::cruise];
     if (!cruise.time_s.empty()) drawn.push_back("95 % band");
     if (!cruise.flights_low_w.empty()) drawn.push_back("range of the flights");
+    VegaJson legend = nullptr;
+    if (drawn.size() > 1) legend = {{"values", drawn}, {"symbolType", "square"}, {"symbolOpacity", 1}, {"columns", 3}};
     auto panels = VegaJson::array();
     for (const auto phase : flight::all_phases) {
         const auto& band = bands[phase];
         const auto& fitted = model.phases[phase];
         panels.push_back({{"phase", phase_word(phase)},
-                          {"drawn", drawn},
+                          {"legend", legend},
                           {"envelope", area_rows(fitted, band.time_s, band.flights_low_w, band.flights_high_w)},
                           {"band", area_rows(fitted, band.time_s, band.low_95_w, band.high_95_w)},
                           {"model", model_rows(fitted)}});
@@ -173,7 +175,7 @@ constexpr std::size_t battery_columns = 130;  // of a panel
 void add_curve(FigureData& data, const battery::DischargeRecord& record, const std::vector<double>& voltage_v,
                std::string_view name) {
     for (const auto i : downsample_m4(record.time_s, voltage_v, battery_columns)) {
-        data.add({record.time_s[i], record.used[i] ? voltage_v[i] : std::nan("")}, {name});
+        data.add({record.time_s[i] - record.time_s.front(), record.used[i] ? voltage_v[i] : std::nan("")}, {name});
     }
 }
 
