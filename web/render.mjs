@@ -80,7 +80,7 @@ function readable(part, size = {}) {
     const labels = channel.legend?.values ?? channel.scale?.domain;
     if (channel.legend?.columns && Array.isArray(labels)) {
       const widthOf = (columns) => Array.from({ length: columns }, (_, c) => 28 + typed * Math.max(...labels.filter((_, i) => i % columns === c).map((label) => Math.min(40, label.length)))).reduce((sum, w) => sum + w, 0);
-      now.legend.columns = [...labels.keys()].map((i) => labels.length - i).find((columns) => widthOf(columns) <= width - 60) ?? 1;
+      now.legend.columns = [...labels.keys()].map((i) => labels.length - i).find((columns) => widthOf(columns) <= width - (width < 420 ? 60 : 170)) ?? 1;
     }
   }
   return changed;

@@ -47,7 +47,7 @@ std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
     return names;
 }
 
-constexpr double relative_margin = 0.05;  // of values that are all the same
+constexpr double relative_margin = 0.05;  // of equal values
 constexpr double ms_per_day = 86400.0 * 1000.0;
 
 std::string title_of(const AircraftTrend& trend) {
