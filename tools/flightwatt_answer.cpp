@@ -163,7 +163,8 @@ std::string write_page(const cli::StageCall& call, const cli::AircraftAnswer& an
     const auto file = std::filesystem::path(answer.folder) / "answer.html";
     report::ReportInput input;
     input.out = answer.folder;
-    input.missions = {mission};
+    // Of an unknown capacity no charge at landing would be true.
+    if (answer.endurance.cruise_s) input.missions = {mission};
     input.are_longest = answer.endurance.cruise_s.has_value();
     input.front = report::answer_section(answer, failsafe_texts(answer.failsafe, setup_of(mission)));
     const report::ReportLog log{[&](const std::string& text) {

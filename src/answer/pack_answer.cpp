@@ -70,9 +70,12 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
                          "capacity, or give that on its label: --capacity AH")
                    : known(identified.battery.capacity_ah, basis.empty() ? "estimated from the flights" : basis);
     const auto flights = identified.flights.size();
-    pack.answer.resistance_ohm =
-        known(identified.fit.resistance_ohm, fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"));
     pack.answer.resistance_interval_ohm = identified.errors.resistance_ohm;
+    pack.answer.resistance_ohm =
+        identified.errors.resistance_ohm.low > 0.0
+            ? known(identified.fit.resistance_ohm,
+                    fmt::format("measured on {} flight{}", flights, flights == 1 ? "" : "s"))
+            : unknown("its interval reaches 0; a log from before take-off, with a climb at full power, shows it");
     pack.answer.air_temperature_c = range_c(identified, &battery::IdentifiedFlight::air_temperature_c);
     pack.answer.battery_start_c = range_c(identified, &battery::IdentifiedFlight::battery_start_c);
     pack.answer.known_down_to_percent = identified.observed_min_soc_percent;

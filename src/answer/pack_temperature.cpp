@@ -91,12 +91,13 @@ void set_temperature(FoundPack& pack, double temperature_c, const std::vector<Pa
     auto& answer = pack.answer;
     answer.asked_temperature_c = temperature_c;
     const auto& range = answer.battery_start_c ? answer.battery_start_c : answer.air_temperature_c;
-    if (!pack.identified || !range) {
-        answer.resistance_at_ohm = unknown(fmt::format(
-            "what {:g} degC change is unknown: {}", temperature_c,
-            pack.identified ? "no log states a temperature; a flight at about that temperature shows it, on a battery "
-                              "monitor that measures the pack's"
-                            : "the flights determine no resistance"));
+    if (!answer.resistance_ohm.value || !range) {
+        answer.resistance_at_ohm =
+            unknown(fmt::format("what {:g} degC change is unknown: {}", temperature_c,
+                                answer.resistance_ohm.value
+                                    ? "no log states a temperature; a flight at about that temperature shows it, on a "
+                                      "battery monitor that measures the pack's"
+                                    : "the flights determine no resistance"));
         return;
     }
     const auto of = answer.battery_start_c ? &battery::IdentifiedFlight::battery_start_c

@@ -18,6 +18,7 @@ using testing::HasSubstr;
 FoundPack flown(const std::vector<std::pair<double, double>>& flights) {
     FoundPack pack;
     pack.battery = test::known_pack();
+    pack.answer.resistance_ohm = known(pack.battery.resistance_ohm, "measured");
     pack.battery.intervals.resistance_scatter = {0.01, flights.size()};
     pack.identified.emplace();
     pack.identified->errors.resistance_ohm = {0.07, 0.09};
@@ -76,7 +77,7 @@ TEST(SetTemperature, IsUnknownWithoutATemperatureOrAResistance) {
     EXPECT_THAT(missing_of(pack.answer), "") << "of the capacity, which is unknown, first";
     pack.answer.capacity_ah = known(2.4, "as given");
     EXPECT_THAT(missing_of(pack.answer), HasSubstr("no log states a temperature"));
-    pack.identified.reset();
+    pack.answer.resistance_ohm = unknown("its interval reaches 0");
     set_temperature(pack, 0.0, {});
     EXPECT_THAT(missing_of(pack.answer), HasSubstr("the flights determine no resistance"));
 }
