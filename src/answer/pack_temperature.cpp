@@ -93,7 +93,7 @@ void set_temperature(FoundPack& pack, double temperature_c, const std::vector<Pa
     const auto& range = answer.battery_start_c ? answer.battery_start_c : answer.air_temperature_c;
     if (!answer.resistance_ohm.value || !range) {
         answer.resistance_at_ohm =
-            unknown(fmt::format("what {:g} degC change is unknown: {}", temperature_c,
+            unknown(fmt::format("the effect of {:g} degC is unknown: {}", temperature_c,
                                 answer.resistance_ohm.value
                                     ? "no log states a temperature; a flight at about that temperature shows it, on a "
                                       "battery monitor that measures the pack's"

@@ -93,10 +93,17 @@ std::string power_line(const Endurance& endurance) {
     return fmt::format("{} ({})", text, endurance.power_w.basis);
 }
 
+/// Whether the pack is colder than in every flight, so that it holds less than is assumed.
+bool is_colder_than_flown(const PackAnswer& pack) {
+    const auto& flown_c = pack.battery_start_c ? pack.battery_start_c : pack.air_temperature_c;
+    return pack.asked_temperature_c && flown_c && *pack.asked_temperature_c < flown_c->low;
+}
+
 std::string time_line(const AircraftAnswer& answer) {
     const auto& [time_s, time_95_s] = std::tie(answer.endurance.time_s, answer.endurance.time_95_s);
     if (!time_s.value) return "unknown: " + time_s.unknown;
-    auto text = fmt::format("{} from a full pack of {:.3g} Ah to {:g} %", time_text(*time_s.value),
+    auto text = fmt::format("{}{} from a full pack of {:.3g} Ah to {:g} %",
+                            is_colder_than_flown(answer.pack) ? "at most " : "", time_text(*time_s.value),
                             answer.pack.capacity_ah.value.value_or(0.0), answer.question.reserve_soc_percent);
     text += time_95_s.value ? fmt::format("; {} in 95 of 100 flights", time_text(*time_95_s.value))
                             : "; in 95 of 100 flights unknown: " + time_95_s.unknown;
@@ -161,10 +168,9 @@ std::string temperature_text(const PackAnswer& pack) {
                 : std::string("; temperature unknown: the logs state none");
     if (!pack.asked_temperature_c) return text;
     const auto& asked = pack.resistance_at_ohm;
-    return text + fmt::format("; at {:g} degC {}", *pack.asked_temperature_c,
-                              asked.value ? fmt::format("{}, {}", mohm_text(asked, pack.resistance_at_interval_ohm),
-                                                        asked.basis)
-                                          : "unknown: " + asked.unknown);
+    if (!asked.value) return text + "; " + asked.unknown;
+    return text + fmt::format("; at {:g} degC {}, {}", *pack.asked_temperature_c,
+                              mohm_text(asked, pack.resistance_at_interval_ohm), asked.basis);
 }
 
 std::string pack_line(const PackAnswer& pack) {
