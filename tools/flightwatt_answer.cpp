@@ -71,7 +71,9 @@ answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArgumen
     } catch (const InputError& error) {
         no_uses_reason = error.hint().empty() ? error.what() : fmt::format("{}; {}", error.what(), error.hint());
     }
-    auto pack = find_pack(records_of(call, uses), no_uses_reason, choose_capacity(arguments.capacity_ah, facts), facts);
+    const auto capacity = choose_capacity(arguments.capacity_ah, facts);
+    if (!capacity.warning.empty()) cli::warn(call, capacity.warning);
+    auto pack = find_pack(records_of(call, uses), no_uses_reason, capacity, facts);
     if (pack.identified) {
         const auto ledger = make_pack_ledger(std::move(uses), {pack.answer.capacity_ah.value});
         for (const auto& note : ledger.notes) cli::add_diagnostic(call, {Severity::note, "the pack", note});

@@ -172,7 +172,7 @@ int finish_each(const cli::StageCall& call, const cli::BatchArguments& arguments
 int run_over_logs(const cli::StageCall& call, const cli::BatchArguments& arguments) {
     if (call.inputs.empty() && !arguments.files_from)
         throw UsageError("no log given: expected LOG, FOLDER or --files-from LIST");
-    if (!call.output) throw UsageError("no folder for the results: expected -o DIR");
+    if (!call.output) throw UsageError("no folder for the results: expected -o DIR, such as -o flightwatt-out");
     cli::refuse_folder_of_logs(call, *call.output);
     const auto options = cli::batch_options(arguments, *call.output);
     const auto published = read_published(arguments.model);

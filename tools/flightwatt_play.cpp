@@ -28,7 +28,8 @@ telemetry::MessageDictionary read_definitions(const cli::StageCall& call, const 
     const auto& log = call.inputs.front();
     if (const auto file = telemetry::find_log_file(log)) return telemetry::read_message_dictionary(*file);
     throw InputError({log}, "has no .log, and frames need the definitions of their messages",
-                     "give --messages messages.xml");
+                     "give --messages messages.xml; a log of another autopilot is played as MAVLink: --to "
+                     "mavlink:127.0.0.1:14550");
 }
 
 /// The definitions that the log is played with: those of frames, and of a binary log; none for a text as lines.

@@ -10,7 +10,6 @@
 #include "mission/mission_file.h"
 #include "mission/planned_mission_toml.h"
 #include "mission/prepared_mission.h"
-#include "mission/sampling/flight_spreads.h"
 #include "stages.h"
 
 #include <filesystem>
@@ -46,7 +45,7 @@ void sample(const SimulateArguments& arguments, const mission::PreparedMission& 
     const auto& file = arguments.samples_file;
     const auto options = sampling_options(arguments.sampling, file.has_value());
     if (!options) return;
-    if (file && !has_known_probability(prepared.setup)) require_flight_variability(prepared.setup);
+    if (file) require_known_probabilities(prepared.setup);
     if (arguments.requirement.probability && !has_uncertainty(prepared.setup)) return;
     summary.samples = sample_flights(prepared, disturbed_by, *options);
     if (file) write_file_atomically(*file, to_csv(summary.samples->bands));

@@ -40,8 +40,15 @@ std::string power_basis(const KnownAircraft& aircraft, const Question& question)
     const auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
     if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
     auto basis = "physics, from power and motion " + measured;
-    if (aircraft.model.is_rotorcraft && question.wind_m_per_s > 0.0)
-        basis += "; assumed: those flights were in calm air";
+    if (!aircraft.model.is_rotorcraft) return basis;
+    if (question.wind_m_per_s > 0.0) basis += "; assumed: those flights were in calm air";
+    const auto& physical = aircraft.model.physical;
+    const auto has = [&](mechanical::PowerTerm term) {
+        return std::ranges::find(physical->terms, term) != physical->terms.end();
+    };
+    if (physical && mission_airspeed_m_per_s(aircraft, question) && !has(mechanical::PowerTerm::drag) &&
+        !has(mechanical::PowerTerm::blade))
+        basis += "; assumed: as much as without airspeed, as the flights do not show what it costs";
     return basis;
 }
 
@@ -203,7 +210,8 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     if (endurance.distance_m.value && question.wind_m_per_s > 0.0)
         endurance.distance_across_m =
             cruise_s * std::sqrt(std::pow(*endurance.airspeed_m_per_s.value, 2) - std::pow(question.wind_m_per_s, 2));
-    if (aircraft.model.physical && !aircraft.model.is_rotorcraft)
+    constexpr std::size_t enough_flights = 3;  // to tell the terms of the power apart
+    if (aircraft.model.physical && !aircraft.model.is_rotorcraft && aircraft.model.flights.size() >= enough_flights)
         if (auto speeds = speed_to_fly(*aircraft.model.physical, question.wind_m_per_s))
             endurance.best_speeds = std::move(speeds->best);
     return endurance;

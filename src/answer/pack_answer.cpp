@@ -4,9 +4,11 @@
 #include "battery/identification.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::answer {
 namespace {
@@ -89,14 +91,17 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
 
 CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std::vector<FlightFacts>& facts) {
     if (given_ah) return {given_ah, "as given"};
-    std::optional<double> logged_ah;
-    for (const auto& flight : facts) {
-        if (!flight.stated_capacity_ah) continue;
-        if (logged_ah && *logged_ah != *flight.stated_capacity_ah) return {};
-        logged_ah = flight.stated_capacity_ah;
-    }
-    if (!logged_ah) return {};
-    return {logged_ah, "by the logs' parameters (BATT_CAPACITY, BAT1_CAPACITY)", true};
+    std::set<double> logged_ah;
+    for (const auto& flight : facts)
+        if (flight.stated_capacity_ah) logged_ah.insert(*flight.stated_capacity_ah);
+    if (logged_ah.empty()) return {};
+    if (logged_ah.size() == 1)
+        return {*logged_ah.begin(), "by the logs' parameters (BATT_CAPACITY, BAT1_CAPACITY)", true};
+    CapacityChoice none;
+    none.warning =
+        fmt::format("the logs' parameters state capacities of {:.4g} Ah: none is used; --capacity AH states it",
+                    fmt::join(logged_ah, " and "));
+    return none;
 }
 
 FoundPack find_pack(std::span<const battery::DischargeRecord> records, const std::string& no_records_reason,

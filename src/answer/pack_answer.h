@@ -47,7 +47,8 @@ struct FoundPack {
 struct CapacityChoice {
     std::optional<double> value_ah = {};
     std::string basis = {};
-    bool is_logged = false;  ///< stated by the logs, not by the user
+    bool is_logged = false;    ///< stated by the logs, not by the user
+    std::string warning = {};  ///< of logs that state different ones
 };
 
 /// Returns the given capacity, else what the logs state where all agree, else none.

@@ -285,7 +285,9 @@ void LiveFlight::Impl::forecast(LiveState& state) const {
     if (!state.expected_power_w || !state.battery || !state.battery->state) return;
     const auto& now = *state.battery->state;
     // A cruise of unknown duration continues at its mean power.
-    const double cruise_w = state.prediction ? state.prediction->cruise.remaining_mean_w : *state.expected_power_w;
+    const double cruise_w = state.prediction
+                                ? state.prediction->cruise.remaining_mean_w + state.prediction->cruise.beyond_w
+                                : *state.expected_power_w;
     const std::vector<battery::ConstantLoad> at_once{{cruise_w, 0.0}};
     state.battery->time_to_reserve_s =
         forecast_landing(*input_->battery, now, at_once, cruise_w, input_->limits).endurance_s;

@@ -390,9 +390,9 @@ BatteryPrediction forecast_battery(const battery::Battery& battery, const batter
                                    const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
                                    const Prediction& prediction) {
     const auto forecast = [&](const battery::Battery& pack, double factor) {
+        const double cruise_w = prediction.cruise.remaining_mean_w + prediction.cruise.beyond_w;
         return battery::forecast_landing(pack, state_of(pack), remaining_power(prediction, factor),
-                                         prediction.cruise.remaining_mean_w * (prediction.overtime_s ? 1.0 : factor),
-                                         limits);
+                                         cruise_w * (prediction.overtime_s ? 1.0 : factor), limits);
     };
     const auto& interval = battery.intervals.capacity_ah;
     auto smaller = battery;
@@ -412,7 +412,7 @@ ReturnDeadline latest_return(const PredictionInput& input, const Prediction& pre
     const double planned_j = energy_j(prediction.remaining_power);
     const double power_factor = planned_j > 0.0 ? energy_j(ahead) / planned_j : 1.0;
     if (prediction.overtime_s) {
-        const double cruise_w = prediction.cruise.remaining_mean_w;
+        const double cruise_w = prediction.cruise.remaining_mean_w + prediction.cruise.beyond_w;
         ahead = {{cruise_w, 0.0}};
         ahead.front().duration_s = forecast_landing(*input.battery, now, ahead, cruise_w, input.limits).endurance_s;
     }

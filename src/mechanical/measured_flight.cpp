@@ -38,6 +38,15 @@ PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& spa
     return samples;
 }
 
+std::string reason_of_too_few(const PhaseSamples& samples, flight::Phase phase) {
+    constexpr std::size_t min_of_cruise = 3;
+    const auto count = samples.tau.size();
+    if (count == 0) return "it has no sample of the power";
+    if (phase != flight::Phase::cruise || count >= min_of_cruise) return "";
+    return fmt::format("it lasts {:.1f} s, with {} sample{} of the power", samples.duration_s, count,
+                       count == 1 ? "" : "s");
+}
+
 PhasePower power_over(const flight::Track& power, const flight::PhaseSpan& span, flight::PhaseStatistics statistics) {
     PhasePower measured;
     measured.statistics = statistics;
@@ -91,7 +100,7 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
             auto reason = exclusion_reason(span);
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             if (reason.empty()) flight.power[span.phase] = power_over(data.power_w, span, statistics);
-            if (reason.empty() && samples.tau.empty()) reason = "it has no sample of the power";
+            if (reason.empty()) reason = reason_of_too_few(samples, span.phase);
             if (!reason.empty()) {
                 measured.exclusions.push_back({flight.samples.flight, span.phase, std::move(reason)});
                 continue;

@@ -133,6 +133,11 @@ double max_predicted_airspeed_m_per_s(const PhysicalModel& model) {
     return std::max(beyond_flown * model.airspeed_m_per_s.high, like_hover_m_per_s);
 }
 
+double min_predicted_airspeed_m_per_s(const PhysicalModel& model, bool is_rotorcraft) {
+    const bool knows_lift = std::ranges::find(model.terms, PowerTerm::induced) != model.terms.end();
+    return knows_lift || is_rotorcraft ? 0.0 : model.airspeed_m_per_s.low;
+}
+
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion) {
     return is_within(model.airspeed_m_per_s, motion.airspeed_m_per_s) &&
            is_within(model.climb_m_per_s, motion.climb_m_per_s);

@@ -176,6 +176,10 @@ ConstantPower predicted_power(const PhysicalModel& model, const TermValues& mean
 /// does: by momentum theory it saves at most what its drag then costs.
 double max_predicted_airspeed_m_per_s(const PhysicalModel& model);
 
+/// Returns the airspeed down to which power may be predicted [m/s]: the least that was flown of a wing whose model has no
+/// term for induced drag, which rises as it flies slower; else 0.
+double min_predicted_airspeed_m_per_s(const PhysicalModel& model, bool is_rotorcraft);
+
 /// Whether the motion is within the range of the model's flights.
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion);
 

@@ -139,6 +139,7 @@ void set_means(PhaseMeans& means, RemainingCruise& rest, Phase phase, const Phas
     const bool by_curve = prior == CruisePrior::curve;
     rest.expected_w = by_curve ? curve_flown_w : mean_w;
     rest.remaining_mean_w = by_curve ? curve_remaining_w : mean_w;
+    rest.beyond_w = mean_w - rest.remaining_mean_w;
     if (flown.duration_s > 0.0) {
         rest.measured_w = units::joule_from_wh(flown.energy_wh) / flown.duration_s;
         means.deviation_w[i] = rest.measured_w - rest.expected_w;

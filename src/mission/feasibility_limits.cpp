@@ -170,10 +170,10 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std
     search.require_end(longest_cruise_s, "a cruise of {:.3g} s still lands with the reserve");
     search.refine();
     if (!search.good())
-        throw NoResultError(
-            fmt::format("even with a cruise of {:.6g} s, the shortest that fits the schedule, the "
-                        "mission does not land with its reserve{}",
-                        search.bad(), search.share_text()));
+        throw NoResultError(fmt::format(
+            "even with the shortest cruise that fits the schedule, {:.3f} s, the mission does not land with "
+            "its reserve{}",
+            search.bad(), search.share_text()));
     const double most_s = *search.good();
     return search.limit(most_s, std::nextafter(most_s, longest_cruise_s) * (1.0 + 1e-9));
 }
@@ -263,9 +263,11 @@ std::string describe_path_times(const MissionSetup& mission, double times) {
     const double share_percent = units::percentage(times - whole, 1.0);
     if (whole == 0.0) {
         const auto end = position_at(once, times * once.duration_s).element;
-        return fmt::format("{:.0f} % of the path fits: {} of {}, until element {} of {}, {}", share_percent,
+        const auto& elements = plan.path.elements;
+        return fmt::format("{:.0f} % of the path fits{}: {} of {}, until element {} of {}, {}", share_percent,
+                           elements.back().is_return_leg ? " with the way back from there" : "",
                            duration_text(times * once.duration_s), duration_text(once.duration_s), end + 1,
-                           plan.path.elements.size(), plan.path.elements.at(end).name);
+                           elements.size(), elements.at(end).name);
     }
     const auto all = compute_trajectory(repeated(plan.path, plan.wind, times), plan.wind);
     const auto up_to_whole = compute_trajectory(repeated(plan.path, plan.wind, whole), plan.wind);

@@ -53,12 +53,15 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
     return best_deg;
 }
 
-NewPath path_of_area(std::string_view text, const std::string& file, const std::string& name, double airspeed_m_per_s) {
-    const double spacing_m = 2.0 * turn_radius_m(airspeed_m_per_s);
+NewPath path_of_area(std::string_view text, const std::string& file, const std::string& name, double airspeed_m_per_s,
+                     bool is_rotorcraft) {
+    constexpr double usual_spacing_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
+    const double spacing_m = is_rotorcraft ? usual_spacing_m : 2.0 * turn_radius_m(airspeed_m_per_s);
     const double heading_deg = best_heading_deg(text, file, spacing_m);
     return {{fmt::format("area = {}", toml_string(name)), fmt::format("spacing_m = {}", spacing_m),
              fmt::format("heading_deg = {}", heading_deg)},
-            {fmt::format("spacing_m = {}, for turns with a bank of {} degrees", spacing_m, bank_deg),
+            {is_rotorcraft ? fmt::format("spacing_m = {}, assumed: your camera and height decide it", spacing_m)
+                           : fmt::format("spacing_m = {}, for turns with a bank of {} degrees", spacing_m, bank_deg),
              fmt::format("heading_deg = {}, for the fewest turns", heading_deg)}};
 }
 
@@ -74,12 +77,10 @@ std::vector<std::string> only_block(std::string_view text, const std::string& fi
                     file, short_list(flown)));
 }
 
-}  // namespace
-
-NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
-                     double airspeed_m_per_s, bool is_rotorcraft) {
+NewPath open_path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
+                          double airspeed_m_per_s, bool is_rotorcraft) {
     const auto text = read_file(file);
-    if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s);
+    if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s, is_rotorcraft);
     const bool of_blocks = has_blocks(text);
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
@@ -97,6 +98,16 @@ NewPath path_of_plan(const std::filesystem::path& file, const std::string& name,
         path.keys.push_back(fmt::format("radius_m = {}", radius_m));
         path.chosen.push_back(fmt::format("radius_m = {}, for circles with a bank of {} degrees", radius_m, bank_deg));
     }
+    return path;
+}
+
+}  // namespace
+
+NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
+                     double airspeed_m_per_s, bool is_rotorcraft) {
+    auto path = open_path_of_plan(file, name, std::move(blocks), airspeed_m_per_s, is_rotorcraft);
+    path.keys.emplace_back("return_to_start = true");
+    path.chosen.emplace_back("return_to_start = true: from its end straight back; without it, it lands where it ends");
     return path;
 }
 

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/sampling/flight_draws.h"
+#include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/joint_spread.h"
 #include "mission/sampling/landing_distribution.h"
 
@@ -87,6 +88,10 @@ void require_samples(const SamplingOptions& options) {
 }
 
 }  // namespace
+
+void require_known_probabilities(const MissionSetup& mission) {
+    if (!has_known_probability(mission)) require_flight_variability(mission);
+}
 
 MonteCarloResult sample_flights(const PreparedMission& prepared, const Disturbances& disturbances,
                                 const SamplingOptions& options) {

@@ -16,6 +16,9 @@ struct SamplingOptions {
     std::size_t band_points = 0;  ///< at which the state of charge is kept of every flight; 0, or 2 and more
 };
 
+/// Throws InputError for a mission whose drawn flights show no probabilities: nothing states how flights differ.
+void require_known_probabilities(const MissionSetup& mission);
+
 /// Draws flights (sampling/flight_draws.h) and simulates them, an adaptive policy in each, with the disturbances at the
 /// same fraction of each flight. Flights depend on the seed and their own number alone, so the result is the same for
 /// any number of threads. Throws as require_uncertainty, and UsageError for less than 2 samples or more than 10

@@ -52,7 +52,7 @@ class PathBuilder {
     }
 
     FlightPath finish() {
-        if (defaults_.return_to_start) {
+        if (defaults_.return_to_start && !path_.elements.empty()) {
             PathEntry home;
             home.name = "return to start";
             home.where = defaults_.where;
@@ -231,7 +231,9 @@ FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults&
     PathBuilder builder(defaults, entries);
     for (const auto& entry : entries) builder.add(entry);
     auto path = builder.finish();
-    if (path.elements.empty()) throw InputError(defaults.where, "the path leads nowhere", "add legs or waypoints");
+    if (path.elements.empty())
+        throw InputError(defaults.where, "the path has no leg to fly: it has no waypoint beyond its start",
+                         "add legs or waypoints");
     return path;
 }
 

@@ -194,6 +194,21 @@ class PathFlight {
     const PathElement* element_ = nullptr;
 };
 
+/// The straight leg from the end of a path to its start; none for a path that ends there.
+std::optional<PathElement> way_back(const FlightPath& path) {
+    constexpr double same_place_m = 1e-3;
+    const auto end = local_position_at(path, {path.elements.size(), 0.0});
+    const double length_m = std::hypot(end.east_m, end.north_m);
+    if (length_m <= same_place_m) return std::nullopt;
+    PathElement back = path.elements.back();
+    back.shape = Leg{length_m, std::atan2(-end.east_m, -end.north_m) * units::degree_per_rad};
+    back.name = "way back to the start";
+    back.climb_rate_m_per_s.reset();
+    back.altitude_change_m = 0.0;
+    for (const auto& element : path.elements) back.altitude_change_m -= element.altitude_change_m;
+    return back;
+}
+
 }  // namespace
 
 PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, InfeasibleLegPolicy infeasible_legs) {
@@ -213,20 +228,12 @@ FlightPath repeated(const FlightPath& path, const Wind& wind, double times) {
     };
     FlightPath result;
     add_share(path, std::min(times, 1.0), result);
-    if (times <= 1.0) return result;
-    constexpr double same_place_m = 1e-3;
+    const auto back = way_back(path);
     FlightPath round = path;
-    const auto end = local_position_at(path, {path.elements.size(), 0.0});
-    if (const double length_m = std::hypot(end.east_m, end.north_m); length_m > same_place_m) {
-        PathElement back = path.elements.back();
-        back.shape = Leg{length_m, std::atan2(-end.east_m, -end.north_m) * units::degree_per_rad};
-        back.name = "way back to the start";
-        back.climb_rate_m_per_s.reset();
-        back.altitude_change_m = 0.0;
-        for (const auto& element : path.elements) back.altitude_change_m -= element.altitude_change_m;
-        round.elements.insert(round.elements.begin(), std::move(back));
-    }
+    if (back) round.elements.insert(round.elements.begin(), *back);
     for (double left = times - 1.0; left > 0.0; left -= 1.0) add_share(round, std::min(left, 1.0), result);
+    if (!back)
+        if (auto home = way_back(result)) result.elements.push_back(std::move(*home));
     return result;
 }
 

@@ -44,7 +44,8 @@ PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,
 std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind);
 
 /// Returns the path flown `times` times, from its end straight back to its start before each time but the first; the
-/// last time up to a fraction of its duration in the wind. Throws as compute_trajectory().
+/// last time up to a fraction of its duration in the wind, and from there straight back if the path itself ends at its
+/// start. Throws as compute_trajectory().
 FlightPath repeated(const FlightPath& path, const Wind& wind, double times);
 
 /// Returns the position on a path at a time from its start, at most its duration.

@@ -22,7 +22,9 @@ TEST(ChooseCapacity, TakesTheGivenOneBeforeThatOfTheLogs) {
 }
 
 TEST(ChooseCapacity, HasNoneWhereLogsDiffer) {
-    EXPECT_FALSE(choose_capacity({}, {logged(5.0), logged(5.2)}).value_ah);
+    const auto several = choose_capacity({}, {logged(30.0), logged(5.2), logged(30.0)});
+    EXPECT_FALSE(several.value_ah);
+    EXPECT_THAT(several.warning, HasSubstr("state capacities of 5.2 and 30 Ah: none is used; --capacity"));
     EXPECT_FALSE(choose_capacity({}, {logged({})}).value_ah);
 }
 

@@ -236,7 +236,7 @@ const std::set<std::string> no_files{
     "HEIGHT",      "ID",    "FLIGHT",  "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
     "NAME[,NAME]", "S|now", "M_PER_S", "PERCENT", "COMMAND", "PORT",        "ADDRESS:PORT",
     "DEVICE:BAUD", "DATE",  "PATTERN", "TARGET",  "WIDTH",   "DEG",         "SPEED@DEG",
-    "TIME",        "KG",    "LINK"};
+    "TIME",        "KG",    "LINK",    "C"};
 
 /// Options that name files to read; those that write have a command above.
 const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",

@@ -153,6 +153,14 @@ TEST(MeasuredFlights, ExcludeWhatHasNoSample) {
     EXPECT_EQ(selection.exclusions[0].reason, "it has no sample of the power");
 }
 
+TEST(MeasuredFlights, ExcludeACruiseOfTwoSamples) {
+    flight::Sortie sortie;
+    sortie.phases = {span(flight::Phase::takeoff, 10, 17), span(flight::Phase::cruise, 17, 18.5)};
+    const auto selection = select({sortie});
+    ASSERT_EQ(selection.exclusions.size(), 1U);
+    EXPECT_EQ(selection.exclusions[0].reason, "it lasts 1.5 s, with 2 samples of the power");
+}
+
 TEST(MeasuredFlights, AreNoneWhereNothingIsLeft) {
     auto first = whole_sortie(10);
     for (auto& phase : first.phases) phase.complete = false;

@@ -69,6 +69,18 @@ TEST(Trajectory, GroundSpeedsAddUpAsVectors) {
     }
 }
 
+/// A path that ends at its start, cut short, still does.
+TEST(Repeated, AFractionOfAPathThatReturnsReturnsToo) {
+    const FlightPath round{{element_of(Leg{300.0, 0.0}), element_of(Leg{400.0, 90.0}),
+                            element_of(Leg{500.0, std::atan2(-400.0, -300.0) * 180.0 / pi})}};
+    const auto half_s = compute_trajectory(repeated(round, {}, 0.5), {}).duration_s;
+    EXPECT_NEAR(half_s, (600.0 + std::hypot(300.0, 300.0)) / 13.0, 1e-6);
+    EXPECT_NEAR(compute_trajectory(repeated(round, {}, 2.0), {}).duration_s, 2400.0 / 13.0, 1e-6);
+    const FlightPath there{{element_of(Leg{300.0, 0.0})}};
+    EXPECT_NEAR(compute_trajectory(repeated(there, {}, 0.5), {}).duration_s, 150.0 / 13.0, 1e-6);
+    EXPECT_NEAR(compute_trajectory(repeated(there, {}, 1.5), {}).duration_s, 600.0 / 13.0, 1e-6);
+}
+
 TEST(Trajectory, CirclesInCalmAirTakeTheirLength) {
     const auto flown = compute_trajectory({{element_of(Circles{75.0, 2.5})}}, {});
     ASSERT_EQ(flown.pieces.size(), 1U);

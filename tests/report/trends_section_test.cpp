@@ -115,7 +115,7 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     ASSERT_TRUE(section);
     ASSERT_EQ(section->figures.size(), 1U);
     EXPECT_EQ(section->figures.front().id, "trends-1");
-    EXPECT_THAT(section->figures.front().description, HasSubstr("cruise [W]: 42, +30 in 30 days"));
+    EXPECT_THAT(section->figures.front().description, HasSubstr("cruise power [W]: 42, +30 in 30 days"));
     EXPECT_THAT(section->html, HasSubstr("rises"));
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cli/terminal.h"
+#include "flight/flight_identity.h"
 
 #include <algorithm>
 #include <cctype>
@@ -80,8 +81,15 @@ Fields<AircraftFolder> record_fields(const AircraftFolder*) {
 std::vector<batch::AircraftGroup> certain_aircraft(const StageCall& call, AircraftGroups groups,
                                                    FlownAircraft flights) {
     std::vector<batch::AircraftGroup> certain;
-    for (const auto& group : groups)
+    for (const auto& group : groups) {
         group.may_be.empty() ? certain.push_back(group) : warn_of_uncertain(call, group, flights);
+        if (group.id.empty() && group.name.empty()) continue;
+        for (const auto number : group.flights)
+            if (const auto& flight = flights[number]; flight.id.empty() && flight.name.empty())
+                warn(call, fmt::format("{}: its log names no aircraft: it is taken as a flight of {}, which nothing "
+                                       "contradicts; --exclude {} leaves it out",
+                                       flight.flight, flight::describe_aircraft(group.id, group.name), flight.flight));
+    }
     return certain;
 }
 

@@ -200,7 +200,13 @@ std::string action_text(const char* name, const answer::FailsafeAction& action) 
         return fmt::format("too late in {:.3g}", units::percent_per_whole * chance);
     };
     auto text = fmt::format("{} at {} % or {} mAh left", name, action.soc_percent, action.remaining_mah);
-    if (action.too_late) text += fmt::format(" ({} of 100 flights)", late(*action.too_late));
+    if (action.too_late) {
+        text += fmt::format(" ({} of 100 flights", late(*action.too_late));
+        if (const auto& in_new = action.too_late_95)
+            text += fmt::format(", {:.1f} to {:.1f} in new ones", units::percent_per_whole * in_new->low,
+                                units::percent_per_whole * in_new->high);
+        text += ")";
+    }
     if (!action.voltage) return text;
     text += fmt::format(", and at {:.2f} V in cruise", action.voltage->voltage_v);
     return text + (action.voltage->too_late ? fmt::format(" (alone {})", late(*action.voltage->too_late)) : "");
@@ -312,8 +318,8 @@ std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer) {
     add("Health", health_line(answer.packs));
     add("Failsafe", failsafe_line(answer), failsafe_command(answer));
     const auto& error = answer.prediction_error_percent;
-    add("Checked", error.value ? fmt::format("new flights take the predicted energy within {:.1f} % ({})", *error.value,
-                                             error.basis)
+    add("Checked", error.value ? fmt::format("flights like these take the predicted energy within {:.1f} % ({})",
+                                             *error.value, error.basis)
                                : "unknown: " + error.unknown);
     add("Limits", fmt::format("{}", fmt::join(answer.endurance.notes, "; ")));
     return lines;

@@ -44,7 +44,9 @@ PredictionInput read_mission_basis(const StageCall& call, const BasisArguments& 
 
 PredictionInput read_model_basis(const StageCall& call, const BasisArguments& arguments) {
     if (!arguments.model) throw UsageError("no model given: expected --mission MISSION.toml, or --model MODEL.toml");
-    if (!arguments.remaining_s) throw UsageError("no time left given: expected --remaining SECONDS");
+    if (!arguments.remaining_s)
+        throw UsageError(
+            "no time left given: expected --remaining SECONDS, or --mission MISSION.toml, which states it");
     const auto& file = *arguments.model;
     auto model = mechanical::read_predicting_model(file);
     for (const auto& warning : model_warnings(model)) warn(call, fmt::format("{}: {}", file, warning));

@@ -30,9 +30,11 @@ std::vector<answer::PackUse> read_pack_uses(const StageCall& call, FlightArgumen
                 add_diagnostic(call, {Severity::warning, "changes of the pack", text, loaded.data.flight});
             return answer::pack_uses(loaded.data, std::move(found.records), places.folder(file).filename().string());
         } catch (const InputError& error) {
-            refusals.emplace_back(file,
-                                  Diagnostic{Severity::warning, "not used: " + kind_of_reason(error.what()),
-                                             fmt::format("it is not used: {}", error.what()), loaded.series.flight});
+            std::string reason = error.what();
+            if (const auto named = loaded.series.flight + ": "; reason.starts_with(named))
+                reason.erase(0, named.size());
+            refusals.emplace_back(file, Diagnostic{Severity::warning, "not used: " + kind_of_reason(reason),
+                                                   fmt::format("it is not used: {}", reason), loaded.series.flight});
             refused.emplace(error);
             return std::vector<answer::PackUse>{};
         }

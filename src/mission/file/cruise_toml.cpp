@@ -41,6 +41,28 @@ void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& miss
     mission.cruise_level = level;
 }
 
+/// Of one or two flights the terms for turns, climbs and gusts are not known. Where level flight straight ahead would take
+/// less than three quarters of their power, the rest is added to the power along a path.
+void add_unexplained_power(mechanical::PhysicalModel& power, MissionSetup& mission) {
+    constexpr std::size_t enough_flights = 3;
+    constexpr double max_unexplained_part = 0.25;
+    const auto& model = *mission.mechanical;
+    const auto& cruise = model.phases[Phase::cruise];
+    const double added_w = power_beyond_straight_flight_w(model);
+    const double cruise_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    if (model.flights.size() >= enough_flights || added_w <= max_unexplained_part * cruise_w) return;
+    add_constant_power(added_w, power);
+    mission.notes.push_back(fmt::format(
+        "path: {:.0f} W are added to level flight straight ahead, which turns, climbs and gusts of the model's flights "
+        "took: fewer than three do not show how much each takes",
+        added_w));
+}
+
+bool may_be_predicted(double airspeed_m_per_s, const mechanical::PhysicalModel& physical, bool is_rotorcraft) {
+    return airspeed_m_per_s >= min_predicted_airspeed_m_per_s(physical, is_rotorcraft) &&
+           airspeed_m_per_s <= max_predicted_airspeed_m_per_s(physical);
+}
+
 std::string near_flown_hint(const mechanical::PhysicalModel& physical) {
     return fmt::format(
         "they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights that were flown so",
@@ -285,7 +307,7 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     const double power = power_w(physical, motion);
     const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
     if (power > max_power_ratio * power_w(physical, {high}) || power * max_power_ratio < power_w(physical, {low}) ||
-        airspeed > max_predicted_airspeed_m_per_s(physical))
+        !may_be_predicted(airspeed, physical, mission.mechanical->is_rotorcraft))
         throw InputError(where, beyond, near_flown_hint(physical));
     if (!is_within_flown_range(physical, motion))
         mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
@@ -319,9 +341,9 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
     plan.power = power_model(mission_table, *table, plan.wind, mission);
     const bool is_physical = mission.mechanical->physical.has_value();
-    const double limit = is_physical ? max_predicted_airspeed_m_per_s(plan.power) : path::max_m_per_s;
+    if (is_physical) add_unexplained_power(plan.power, mission);
     for (const auto& element : plan.path.elements)
-        if (element.airspeed_m_per_s > limit)
+        if (is_physical && !may_be_predicted(element.airspeed_m_per_s, plan.power, mission.mechanical->is_rotorcraft))
             throw InputError(table->where(),
                              fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name,
                                          element.airspeed_m_per_s),

@@ -73,8 +73,8 @@ TEST(AnswerText, TemperatureOfThePackIsThatOfTheLogs) {
     answer.pack.resistance_at_ohm = known(0.04, "assumed: 3 %");
     answer.pack.resistance_at_interval_ohm = Interval{0.02, 0.06};
     EXPECT_THAT(text_of(answer), HasSubstr("(measured); at -5 degC 40 mOhm (20 to 60), assumed: 3 %"));
-    answer.pack.resistance_at_ohm = answer::unknown("no log states it");
-    EXPECT_THAT(text_of(answer), HasSubstr("(measured); at -5 degC unknown: no log states it"));
+    answer.pack.resistance_at_ohm = answer::unknown("the effect of -5 degC is unknown");
+    EXPECT_THAT(text_of(answer), HasSubstr("(measured); the effect of -5 degC is unknown\n"));
 }
 
 }  // namespace
