@@ -210,7 +210,7 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     if (endurance.distance_m.value && question.wind_m_per_s > 0.0)
         endurance.distance_across_m =
             cruise_s * std::sqrt(std::pow(*endurance.airspeed_m_per_s.value, 2) - std::pow(question.wind_m_per_s, 2));
-    constexpr std::size_t enough_flights = 3;  // to tell the terms of the power apart
+    constexpr std::size_t enough_flights = 3;  // that distinguish the terms of the power
     if (aircraft.model.physical && !aircraft.model.is_rotorcraft && aircraft.model.flights.size() >= enough_flights)
         if (auto speeds = speed_to_fly(*aircraft.model.physical, question.wind_m_per_s))
             endurance.best_speeds = std::move(speeds->best);

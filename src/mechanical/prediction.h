@@ -83,7 +83,7 @@ struct RemainingCruise {
     double expected_w = 0.0;  ///< mean power so far, by the model
     double measured_w = 0.0;  ///< measured mean power so far
     double remaining_mean_w = 0.0;
-    double beyond_w = 0.0;  ///< what a cruise that goes on takes more: the mean of the curve less that of its end
+    double beyond_w = 0.0;  ///< what a longer cruise takes more: the mean of the curve less that of its end
 };
 
 /// Correlations between flights of the phases' mean powers; 0 of two flights or fewer. Shrunk as if three more flights

@@ -114,7 +114,7 @@ TEST(Prediction, TakesTheFlightsOwnLevelWhereFlightsDifferAndDoNotDrift) {
                 1e-3);
     EXPECT_NEAR(rest.remaining_mean_w + rest.beyond_w - 40.0,
                 units::joule_from_wh(predict_before_flight(cruise, 600.0).energy_wh) / 600.0 - rest.expected_w, 1e-3)
-        << "a cruise that goes on does not stay at the end of the curve";
+        << "a longer cruise does not stay at the power of the end of the curve";
 }
 
 TEST(Prediction, ShrinksByTheVariances) {

@@ -238,6 +238,8 @@ class QgcReader {
     QgcReader(const std::string& file, bool is_rotorcraft) : is_rotorcraft_(is_rotorcraft) { mission_.where = {file}; }
 
     MissionItems read(const Json& plan) {
+        if (plan.is_object() && !plan.contains("fileType") && plan.contains("type"))
+            refuse("is GeoJSON, not a plan", "flightwatt new-mission --plan FILE makes a mission of it");
         if (!plan.is_object() || plan.value("fileType", Json()) != "Plan")
             refuse("has no \"fileType\": \"Plan\"", "expected a plan of QGroundControl");
         require_version(plan, 1, 1, "the plan");

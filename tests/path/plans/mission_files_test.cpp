@@ -112,7 +112,8 @@ TEST(MissionFiles, OfBrokenPlansAreErrors) {
     const auto refusal = [](const std::string& text) { return rejected([&] { parse_qgc_plan(text, "q.plan", {}); }); };
     EXPECT_EQ(refusal("{\n1"), "q.plan:2: is not JSON; expected a plan of QGroundControl");
     EXPECT_EQ(refusal(R"({"type": "Polygon"})"),
-              "q.plan: has no \"fileType\": \"Plan\"; expected a plan of QGroundControl");
+              "q.plan: is GeoJSON, not a plan; flightwatt new-mission --plan FILE makes a mission of it");
+    EXPECT_EQ(refusal("{}"), "q.plan: has no \"fileType\": \"Plan\"; expected a plan of QGroundControl");
     EXPECT_EQ(refusal(qgc(R"({"type": "SimpleItem", "command": 1e9, "frame": 3, "params": []})")),
               "q.plan: item 1 has no command that is a whole number; save the plan again");
     EXPECT_EQ(refusal(qgc(R"({"type": "Other"})")), "q.plan: item 1 has type Other; expected SimpleItem");
