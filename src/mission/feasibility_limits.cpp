@@ -169,11 +169,14 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std
     LimitSearch search(with_cruise_s, probability);
     search.require_end(longest_cruise_s, "a cruise of {:.3g} s still lands with the reserve");
     search.refine();
+    constexpr double no_cruise_s = 1.0;
     if (!search.good())
         throw NoResultError(fmt::format(
-            "even with the shortest cruise that fits the schedule, {:.3f} s, the mission does not land with "
-            "its reserve{}",
-            search.bad(), search.share_text()));
+            "even {}, the mission does not land with its reserve{}",
+            search.bad() < no_cruise_s
+                ? std::string("without a cruise")
+                : fmt::format("with a cruise of {:.6g} s, the shortest that fits the schedule", search.bad()),
+            search.share_text()));
     const double most_s = *search.good();
     return search.limit(most_s, std::nextafter(most_s, longest_cruise_s) * (1.0 + 1e-9));
 }

@@ -16,7 +16,6 @@ TEST(SingleFlights, LeadFromTheBatchToTheReport) {
     for (const std::string log : {
              "autopilots/px4/wing_proto9.ulg",     // its take-off's curve falls below 0 W
              "autopilots/px4/copter_upgrade.ulg",  // and this one's landing's
-             "wild/la_mechanical_fail.log",        // a cruise of one sample
              "wild/pb_1.BIN.gz",                   // eight, of which few have samples enough
          }) {
         SCOPED_TRACE(log);
@@ -33,6 +32,16 @@ TEST(SingleFlights, LeadFromTheBatchToTheReport) {
             EXPECT_THAT(run.out, testing::EndsWith("\n3\n")) << "one flight has no curve";
         }
     }
+}
+
+TEST(SingleFlights, OfACruiseOfOneSampleHaveNoModel) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto log = test::shared_dir() / "archives" / "wild" / "la_mechanical_fail.log";
+    const auto run = test::run_shell("flightwatt batch " + test::shell_quoted(log) + " -o my", test::scratch_dir());
+    EXPECT_EQ(run.code, 4);
+    EXPECT_THAT(run.err,
+                testing::HasSubstr("cruise is not used in the fit: it lasts 0.5 s, with 1 sample of the power"));
+    EXPECT_THAT(run.err, testing::HasSubstr("add a log with a complete cruise"));
 }
 
 }  // namespace
