@@ -10,7 +10,7 @@ import time
 from measure import BenchError, make_flights, say
 from rows import Row, at_most
 
-TARGETS = ["flightwatt-synthesize", "flightwatt-batch"]
+TARGETS = ["programs"]
 REAL_LOG = ("--cruise", "4200")  # 4.2 MB
 SMALL_LOG = ("--cruise", "60", "--flight-messages-only")
 THINNING = 2  # of small logs every second message of a kind: 70 kB

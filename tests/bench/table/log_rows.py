@@ -8,7 +8,7 @@ import shutil
 from measure import BenchError, say
 from rows import Row, at_least, at_most, times_as_fast
 
-TARGETS = ["read_log", "reader_bench", "flightwatt-parse"]
+TARGETS = ["read_log", "reader_bench", "programs"]
 # Python splits; it parses no numbers.
 PYTHON = "import sys\nwith open(sys.argv[1], 'rb') as f:\n    for line in f: line.split()"
 

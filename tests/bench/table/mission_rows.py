@@ -5,7 +5,7 @@ import re
 from measure import BenchError, say
 from rows import Row, at_most, times_as_fast
 
-TARGETS = ["flightwatt-simulate", "flightwatt-report", "live_day_bench"]
+TARGETS = ["programs", "live_day_bench"]
 THEVENIN = "missions/synthetic/thevenin-pack.toml"
 PAPER = "missions/paper/phased.toml"
 SURVEY = "missions/synthetic/survey-path.toml"
