@@ -1,0 +1,51 @@
+// Numbers as people read them: digits and units by web/app/README.md. Nothing is computed here but units of time.
+
+const minus = (text: string) => text.replace("-", "−");
+
+/// Returns a number with that many decimals, or "unknown".
+export function number(value: number | null | undefined, decimals: number): string {
+  return value == null || !Number.isFinite(value) ? "unknown" : minus(value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1"));
+}
+
+/// Returns a number with its unit, "16.2 %", or "unknown".
+export function quantity(value: number | null | undefined, decimals: number, unit: string): string {
+  const text = number(value, decimals);
+  return text === "unknown" ? text : `${text} ${unit}`;
+}
+
+/// Returns "21 min 29 s", from an hour on "1 h 12 min"; down to whole seconds.
+export function duration(seconds: number | null | undefined): string {
+  if (seconds == null || !Number.isFinite(seconds)) return "unknown";
+  const whole = Math.floor(Math.abs(seconds) + 1e-6);
+  const sign = seconds < 0 && whole > 0 ? "−" : "";
+  if (whole >= 3600) return `${sign}${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
+  if (whole >= 60) return `${sign}${Math.floor(whole / 60)} min ${whole % 60} s`;
+  return `${sign}${whole} s`;
+}
+
+/// Returns "4.1 km", or below a kilometre "830 m".
+export function distance(metres: number | null | undefined): string {
+  if (metres == null || !Number.isFinite(metres)) return "unknown";
+  return Math.abs(metres) < 1000 ? quantity(metres, 0, "m") : quantity(metres / 1000, 1, "km");
+}
+
+/// Returns a chance in words, from a probability of 0 to 1: "95 of 100", "over 99 of 100", "under 1 of 100".
+export function chance(probability: number | null | undefined): string {
+  if (probability == null || !Number.isFinite(probability)) return "unknown";
+  if (probability < 0.01) return "under 1 of 100";
+  if (probability > 0.99) return "over 99 of 100";
+  return `${Math.round(100 * probability)} of 100`;
+}
+
+/// Returns the date of "2020-07-03T12:17:45Z" as "3 July 2020", with the time of day if there is one.
+export function date(iso: string | null | undefined): string {
+  if (!iso) return "no date";
+  const [day, time] = iso.split(/[T ]/);
+  const at = new Date(`${day}T00:00:00Z`);
+  if (Number.isNaN(at.getTime())) return iso;
+  const text = at.toLocaleDateString("en-GB", { day: "numeric", month: "long", year: "numeric", timeZone: "UTC" });
+  return time ? `${text}, ${time.slice(0, 5)}` : text;
+}
+
+/// Compares two names so that "flight 10" follows "flight 9".
+export const naturally = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;

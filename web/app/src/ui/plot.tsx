@@ -1,0 +1,114 @@
+// Plots over time or another axis, by uPlot: drag to zoom, double-click for all; plots of one group share their cursor.
+import { useEffect, useRef } from "preact/hooks";
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+
+type Values = (number | null)[];
+
+/// A line, or with `band` the area between two rows of values.
+export interface Line {
+  name: string;
+  /// A name of a colour in app.css ("cruise", "ink", "alarm" ...).
+  colour: string;
+  y: Values;
+  band?: Values;
+  dashed?: boolean;
+  points?: boolean;
+}
+
+interface PlotProps {
+  /// The axes with their units: "Time [min]", "Power [W]".
+  x_title: string;
+  y_title: string;
+  x: number[];
+  lines: Line[];
+  height?: number;
+  /// Plots with the same group share cursor and zoom.
+  group?: string;
+  y_range?: [number, number];
+  /// Vertical stripes, as phases of a flight: from, to, colour.
+  stripes?: { from: number; to: number; colour: string }[];
+  /// What the plot shows, in words.
+  description: string;
+  onCursor?: (index: number | null) => void;
+}
+
+const colour = (name: string) =>
+  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || name;
+
+function options(props: PlotProps, width: number): uPlot.Options {
+  const axis = { stroke: colour("ink2"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
+  const series: uPlot.Series[] = [{ label: props.x_title }];
+  const bands: uPlot.Band[] = [];
+  for (const line of props.lines) {
+    const stroke = colour(line.colour);
+    if (line.band) {
+      bands.push({ series: [series.length + 1, series.length], fill: `${stroke}26` });
+      series.push({ label: `${line.name}, low`, width: 0, points: { show: false } });
+      series.push({ label: `${line.name}, high`, width: 0, points: { show: false } });
+    } else {
+      series.push({
+        label: line.name,
+        stroke: line.points ? undefined : stroke,
+        width: line.points ? 0 : 2,
+        dash: line.dashed ? [6, 4] : undefined,
+        points: line.points ? { show: true, size: 6, fill: stroke, stroke } : { show: false },
+        spanGaps: false,
+      });
+    }
+  }
+  return {
+    width,
+    height: props.height ?? 220,
+    scales: { x: { time: false }, y: props.y_range ? { range: props.y_range } : {} },
+    axes: [
+      { ...axis, label: props.x_title, labelSize: 20, size: 32, font: "12px system-ui", labelFont: "12px system-ui" },
+      { ...axis, label: props.y_title, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
+    ],
+    series,
+    bands,
+    legend: { show: true, live: true },
+    cursor: props.group ? { sync: { key: props.group, scales: ["x", null] } } : {},
+    hooks: {
+      drawClear: [
+        (plot) => {
+          for (const stripe of props.stripes ?? []) {
+            const left = plot.valToPos(stripe.from, "x", true);
+            plot.ctx.fillStyle = `${colour(stripe.colour)}1f`;
+            plot.ctx.fillRect(left, plot.bbox.top, plot.valToPos(stripe.to, "x", true) - left, plot.bbox.height);
+          }
+        },
+      ],
+      setCursor: props.onCursor ? [(plot) => props.onCursor?.(plot.cursor.idx ?? null)] : [],
+    },
+  };
+}
+
+export function Plot(props: PlotProps) {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const element = place.current;
+    if (!element) return;
+    const data = [props.x, ...props.lines.flatMap((line) => (line.band ? [line.band, line.y] : [line.y]))];
+    let plot: uPlot | undefined;
+    const draw = () => {
+      plot?.destroy();
+      plot = new uPlot(options(props, element.clientWidth), data as uPlot.AlignedData, element);
+    };
+    draw();
+    const resized = new ResizeObserver(() => {
+      if (plot && plot.width !== element.clientWidth) plot.setSize({ width: element.clientWidth, height: plot.height });
+    });
+    resized.observe(element);
+    const theme = matchMedia("(prefers-color-scheme: dark)");
+    theme.addEventListener("change", draw);
+    document.addEventListener("themechange", draw);
+    return () => {
+      resized.disconnect();
+      theme.removeEventListener("change", draw);
+      document.removeEventListener("themechange", draw);
+      plot?.destroy();
+    };
+  }, [props.x, props.lines, props.stripes, props.height]);
+  return <div class="plot" role="img" aria-label={props.description} ref={place} />;
+}

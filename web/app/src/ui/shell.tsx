@@ -1,0 +1,60 @@
+// The frame of all screens: name, tabs, theme; at the foot the facts of the document.
+import type { ComponentChildren } from "preact";
+import { useEffect, useState } from "preact/hooks";
+
+export interface Screen {
+  id: string;
+  name: string;
+  show: () => ComponentChildren;
+}
+
+/// Returns the screen that the address names, or the first.
+function chosen(screens: Screen[]): Screen | undefined {
+  return screens.find((screen) => `#${screen.id}` === location.hash) ?? screens[0];
+}
+
+function nextTheme() {
+  const root = document.documentElement;
+  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  root.dataset.theme = dark ? "light" : "dark";
+  document.dispatchEvent(new Event("themechange"));
+}
+
+/// Shows the screen that the address names; `aside` stands at the right of the tabs.
+export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foot?: ComponentChildren }) {
+  const [screen, setScreen] = useState(() => chosen(props.screens));
+  useEffect(() => {
+    const follow = () => {
+      setScreen(chosen(props.screens));
+      scrollTo(0, 0);
+    };
+    follow();
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, [props.screens]);
+  return (
+    <>
+      <a class="skip" href="#main" onClick={(event) => (event.preventDefault(), document.querySelector<HTMLElement>("main")?.focus())}>
+        To the content
+      </a>
+      <header class="bar">
+        <p class="brand">FlightWatt</p>
+        <nav aria-label="Screens">
+          {props.screens.map((one) => (
+            <a href={`#${one.id}`} aria-current={one.id === screen?.id ? "page" : undefined}>
+              {one.name}
+            </a>
+          ))}
+        </nav>
+        <div class="bar-aside">
+          {props.aside}
+          <button type="button" class="quiet" onClick={nextTheme}>
+            Light or dark
+          </button>
+        </div>
+      </header>
+      <main tabIndex={-1}>{screen?.show()}</main>
+      <footer>{props.foot}</footer>
+    </>
+  );
+}
