@@ -265,7 +265,7 @@ TEST(Predictor, TakesPacketsOfMavlink) {
     for (int i = 0; i < 1200; ++i) {
         const double time_s = 0.1 * i;
         const bool flies = time_s >= 10.0;
-        const auto bytes = vehicle.heartbeat(1) + vehicle.status(11'800, flies ? 200 : 5) +
+        const auto bytes = vehicle.heartbeat(1) + vehicle.status(11'800, flies ? (i % 2 == 0 ? 190 : 210) : 5) +
                            vehicle.position(time_s, flies ? std::min(4.0 * (time_s - 10.0), 60.0) : 0.0);
         EXPECT_TRUE(predictor.push_frames(time_s, bytes));
         if (flies) drawn_wh += 0.1 * 11.8 * 2.0 / 3600.0;
