@@ -332,6 +332,9 @@ with its source, or by a signal, and then prints its last prediction. The source
                 "write the received messages as a log into this folder");
     options.add("serve", arguments.serve, {.value = "PORT"},
                 "serve a page on this machine; at ADDRESS:PORT also to others");
+    options.add("request-mission", arguments.requests_mission,
+                "ask the aircraft for its mission, with --model and --battery; else one that passes by is used",
+                {.needs = {"mavlink"}});
     options.add(
         "announce", arguments.announces,
         "tell the ground station by MAVLink: fw_land, fw_home, fw_resv once a second, a text when an alarm changes",

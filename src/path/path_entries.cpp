@@ -62,7 +62,8 @@ class PathBuilder {
             fly_to(home, start_);
             if (!path_.elements.empty() && path_.elements.back().name == home.name)
                 path_.elements.back().is_return_leg = true;
-            if (change_m_ != 0.0) change_height(home);
+            // Without a rate the height above the start is left to the landing.
+            if (change_m_ != 0.0 && rate_of(home)) change_height(home);
         }
         return std::move(path_);
     }

@@ -59,6 +59,18 @@ TEST(PathEntries, BecomeLegsFromPlaceToPlace) {
     EXPECT_EQ(path.elements[2].name, "return to start");
 }
 
+// An ArduPilot's plan that ends with a return to launch, at another height than it began.
+TEST(PathEntries, DoNotReturnWhereTheyAreBack) {
+    auto home = defaults();
+    home.return_to_start = true;
+    home.altitude_m = 40.0;
+    auto out = to(300.0, 0.0);
+    out.altitude_m = 60.0;
+    auto back = to(0.0, 0.0);
+    back.altitude_m = 60.0;
+    EXPECT_EQ(build_path({out, back}, home).elements.size(), 2U);
+}
+
 TEST(PathEntries, CircleAroundAPlaceFromItsEdge) {
     const auto path = build_path({circles(to(1000.0, 0.0), 2.0, 100.0), to(0.0, 0.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 3U);
