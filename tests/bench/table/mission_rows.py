@@ -53,8 +53,8 @@ def watched(bench):
     # Plans come with a slot's first look: one of many, which a third of an hour in the air has enough of.
     decided, _, planned_s = looks(bench, max(0.85, hours / 12), 10, "--replan")
     return [
-        Row("mean update of watch", of, mean_s, "s", at_most(5e-3, "s")),
-        Row("longest update of watch", of, most_s, "s", at_most(5e-3, "s")),
+        Row("mean update of watch", of, mean_s, "s", at_most(5e-2, "s")),
+        Row("longest update of watch", of, most_s, "s", at_most(5e-2, "s")),
         Row("longest update that plans", f"{decided} updates", planned_s, "s", at_most(0.2, "s")),
     ]
 
