@@ -97,7 +97,7 @@ test_wheel() {
     inside venv/bin/flightwatt --version | grep -q . || fail "flightwatt does not start"
     quiet inside "$pip" check
     quiet inside "$pip" uninstall --yes flightwatt
-    left=$(find "$root/srv/venv" -name '*flightwatt*')
+    left=$(find "$root/srv/venv" -path '*flightwatt*' ! -type d) # pip leaves folders
     [[ -z $left ]] || fail "removed, it leaves $left"
 }
 
