@@ -6,10 +6,12 @@
     soc = fw.curve("mission.toml")               # state of charge over time, from flightwatt simulate
 
 Inputs of a stage are arguments. Options are keywords with _ instead of -: True gives an option without a value, a list
-repeats the option, None and False omit it. The program is FLIGHTWATT of the environment, or flightwatt on the PATH.
-Tables need pandas; the rest needs the standard library only.
+repeats the option, None and False omit it. The program is FLIGHTWATT of the environment, or the one that pip installed
+with this module, or flightwatt on the PATH. Tables need pandas; the rest needs the standard library only.
 """
 
+import functools
+import importlib.metadata
 import io
 import json
 import os
@@ -38,9 +40,20 @@ class SkippedInput(UserWarning):
     """Some inputs were unusable; the result is that of the others."""
 
 
+@functools.lru_cache(maxsize=None)
+def _installed_program():
+    """The program of the wheel that this module came with, wherever pip has put it; else flightwatt on the PATH."""
+    try:
+        files = importlib.metadata.files("flightwatt") or ()
+    except importlib.metadata.PackageNotFoundError:
+        files = ()
+    programs = [file.locate() for file in files if file.parts[-2:] == ("bin", "flightwatt")]
+    return str(programs[0]) if programs else "flightwatt"
+
+
 def command(stage, *inputs, **options):
     """The command line of a stage, as a list."""
-    line = [os.environ.get("FLIGHTWATT", "flightwatt"), stage.replace("_", "-"), *map(str, inputs)]
+    line = [os.environ.get("FLIGHTWATT") or _installed_program(), stage.replace("_", "-"), *map(str, inputs)]
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
         for one in value if isinstance(value, (list, tuple)) else [value]:

@@ -13,6 +13,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/auxv.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -175,7 +176,12 @@ std::error_code open_error(const std::filesystem::path& path) {
 
 std::filesystem::path executable_folder() {
     std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (error) {  // no /proc, as in an empty root: the path that the program was started by
+        const auto* started_by =
+            reinterpret_cast<const char*>(::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr)
+        program = std::filesystem::canonical(started_by, error);
+    }
     return error ? std::filesystem::path() : program.parent_path();
 }
 
