@@ -51,13 +51,13 @@ function timeAxis(duration_s: number, most: number) {
   return { title: "minutes since lift-off", range: [0, Math.max(end, 0.1)] as [number, number], ticks, label: (value: number) => number(value, Number.isInteger(value) ? 0 : 1) };
 }
 
-export function Reserve({ place, percent, wide = true }: { place: Place; percent: number; wide?: boolean }) {
+export function Reserve({ place, percent, wide = true, words_at }: { place: Place; percent: number; wide?: boolean; words_at?: number }) {
   if (percent <= 0) return null;
   const y = place.y(percent);
   return (
     <>
       <line class="reserve" x1={place.left} x2={place.right} y1={y} y2={y} />
-      {wide && <text class="halo" x={place.left + 6} y={y - 5}>reserve {quantity(percent, percent % 1 ? 1 : 0, "%")}</text>}
+      {wide && <text class="halo" x={place.left + 6} y={words_at ?? y - 5}>reserve {quantity(percent, percent % 1 ? 1 : 0, "%")}</text>}
     </>
   );
 }
@@ -173,7 +173,8 @@ export function Sparkline({ mission }: { mission: MissionDocument }) {
     x: (time: number) => 2 + (time / summary.duration_s) * (width - 9), y: (soc: number) => height - 4 - (soc / 100) * (height - 8),
     left: 2, right: width - 7, top: 4, bottom: height - 4,
   };
-  const thinned = curve.time_s.length > 60 ? curve.time_s.map((_, i) => i).filter((i) => i % Math.ceil(curve.time_s.length / 60) === 0) : curve.time_s.map((_, i) => i);
+  const step = Math.ceil(curve.time_s.length / 60);
+  const thinned = curve.time_s.map((_, i) => i).filter((i) => i % step === 0 && (curve.time_s[i] as number) <= mission.end_s);
   return (
     <svg class="spark-charge" viewBox={`0 0 ${width} ${height}`} width={width} height={height} aria-hidden="true">
       <Reserve place={place} percent={summary.reserve_soc_percent} wide={false} />
@@ -197,10 +198,11 @@ export function AllCharges({ missions, selected, onSelect }: { missions: Mission
       {(place) => {
         const ends = missions.map((mission) => place.y(mission.landing_soc_percent ?? 0));
         const labels = spread(ends, 19, place.top, place.bottom + 4);
+        const reserve_words = spread(reserves.map((percent) => place.y(percent) - 5), 14, place.top, place.bottom - 4);
         const to = place.right + 22;
         return (
           <>
-            {reserves.map((percent) => <Reserve place={place} percent={percent} />)}
+            {reserves.map((percent, i) => <Reserve place={place} percent={percent} words_at={reserve_words[i]} />)}
             {[...missions].map((mission, i) => ({ mission, i })).reverse().map(({ mission, i }) => (
               <path class={`line ${i === selected ? "chosen tone-ink" : `tone-${toneOf(mission.outcome)}`}`} d={lineOf(place, minutes(mission.curve.time_s), mission.curve.soc_percent)} />
             ))}

@@ -92,7 +92,7 @@ interface FlightsProps {
 
 export function Flights({ flights, exclusions, outlines, selected, onSelect }: FlightsProps) {
   const rows = useMemo(() => rowsOf(flights), [flights]);
-  const columns = useMemo(() => known(columnsOf(new Set(flights.map(({ aircraft }) => aircraft)).size > 1), rows), [rows]);
+  const columns = useMemo(() => known(columnsOf(new Set(flights.map(({ aircraft }) => aircraft).filter(Boolean)).size > 1), rows), [rows]);
   const flight = flights[selected];
   const select = (row: Row) => {
     onSelect(row.index);

@@ -38,8 +38,12 @@ export function MissionCard({ mission, index, count, heading = "h2" }: { mission
       </div>
       {(card.help || card.better || card.notes.length > 0) && (
         <div class="mission-help">
-          {card.help && <p><b>{grade === "good" ? "To spare" : "What would help"}:</b> {card.help}.</p>}
-          {card.better && <p>{card.better}.</p>}
+          {(card.help || card.better) && (
+            <p>
+              {card.help && <><b>{grade === "good" ? "To spare" : "What would help"}:</b> {card.help}. </>}
+              {card.better && `${card.better}.`}
+            </p>
+          )}
           {card.notes.map((note) => <p class="mission-note">{note}.</p>)}
         </div>
       )}
@@ -48,14 +52,15 @@ export function MissionCard({ mission, index, count, heading = "h2" }: { mission
   );
 }
 
-/// The head of a column that all missions share, or a general one.
-function shared(values: string[], otherwise: string): string {
-  const known = [...new Set(values.filter(Boolean))];
-  return known.length === 1 ? (known[0] as string) : otherwise;
+/// The most frequent of some texts.
+function mostFrequent(texts: string[]): string {
+  const counts = new Map<string, number>();
+  for (const text of texts.filter(Boolean)) counts.set(text, (counts.get(text) ?? 0) + 1);
+  return [...counts].sort((a, b) => b[1] - a[1])[0]?.[0] ?? "";
 }
 
 function columnsOf(missions: MissionDocument[]): Column<MissionDocument>[] {
-  const reach_name = shared(missions.map(({ card }) => card.reach_name), "Reach");
+  const reach_name = mostFrequent(missions.map(({ card }) => card.reach_name));
   const verdict = (mission: MissionDocument, text: string) => <b class={`tone-${toneOf(mission.outcome)}`}>{text}</b>;
   const columns: (Column<MissionDocument> | false)[] = [
     {
@@ -71,7 +76,7 @@ function columnsOf(missions: MissionDocument[]): Column<MissionDocument>[] {
     { head: "State of charge", cell: (mission) => <Sparkline mission={mission} /> },
     {
       head: "Charge at landing",
-      cell: (mission) => <span>{verdict(mission, mission.card.landing)}<span class="small-under">{mission.card.words}</span></span>,
+      cell: (mission) => <span>{verdict(mission, mission.card.landing)}<span class="small-under no-wrap">{mission.card.words}</span></span>,
       by: ({ landing_soc_percent }) => landing_soc_percent ?? -1, numeric: true,
     },
     {
@@ -80,7 +85,7 @@ function columnsOf(missions: MissionDocument[]): Column<MissionDocument>[] {
     },
     missions.some(({ card }) => card.reach) && {
       head: reach_name,
-      cell: ({ card }) => <span><b>{card.reach}</b>{reach_name === "Reach" && <span class="small-under">{card.reach_name}</span>}</span>,
+      cell: ({ card }) => <span><b>{card.reach}</b>{card.reach && card.reach_name !== reach_name && <span class="small-under">{card.reach_name}</span>}</span>,
       numeric: true,
     },
     missions.some(({ card }) => card.help) && { head: "To keep the reserve in 95 of 100 flights", cell: ({ card }) => <span class="mission-to-keep">{card.help}</span> },
@@ -90,8 +95,8 @@ function columnsOf(missions: MissionDocument[]): Column<MissionDocument>[] {
 
 export function MissionTable({ missions, selected, onSelect }: { missions: MissionDocument[]; selected: number; onSelect: (mission: number) => void }) {
   return (
-    <section class="card flush mission-table" aria-label="All missions">
-      <Table caption="Missions, worst first" columns={columnsOf(missions)} rows={missions} page={40} words={({ title, card }) => `${title} ${card.runs} ${card.words}`}
+    <section class="card flush mission-table" aria-label="Table of missions">
+      <Table caption="Missions, worst first" columns={columnsOf(missions)} rows={missions} page={40} words={missions.length > 20 ? ({ title, card }) => `${title} ${card.runs} ${card.words}` : undefined}
         selected={missions[selected]} onSelect={(mission) => onSelect(missions.indexOf(mission))} />
     </section>
   );

@@ -46,7 +46,7 @@ function CellButton({ grid, i, best, is_selected, onSelect }: { grid: QualityGri
   const label = `${settingOf(grid, i)}: ${soc == null ? `the battery fails after ${duration(cell.end_s)}` : `lands with ${quantity(soc, 1, "%")}`}${cell.keeps ? `, keeps the reserve in ${cell.keeps} of flights` : ""}`;
   return (
     <button type="button" class="quality-cell" aria-pressed={is_selected} aria-label={label} onClick={onSelect}
-      style={{ background: `rgb(${colour})`, color: luminance(colour) < 0.18 ? "#fff" : "#12181d" }}>
+      style={{ background: `rgb(${colour})`, color: luminance(colour) < 0.18 ? "#fff" : "#000" }}>
       <b>{soc == null ? "empty" : quantity(soc, 1, "%")}</b>
       {cell.keeps && <small>{cell.keeps}</small>}
     </button>

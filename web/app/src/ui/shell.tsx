@@ -65,7 +65,7 @@ export function Shell(props: { name?: string; screens: Screen[]; aside?: Compone
           </button>
         </div>
       </header>
-      <main tabIndex={-1}>{screen?.show()}</main>
+      <main id="main" tabIndex={-1}>{screen?.show()}</main>
       <footer>{props.foot}</footer>
     </>
   );
