@@ -7,6 +7,7 @@
 #include "answer/pack_temperature.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "batch/manifest.h"
 #include "battery/battery_toml.h"
 #include "cli/output/aircraft_choice.h"
@@ -23,7 +24,7 @@
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
-#include "report/answer_section.h"
+#include "report/answer_document.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "stages.h"
@@ -159,8 +160,31 @@ std::string missed_requirement(const AnswerArguments& arguments, const answer::K
     return reason_missed(arguments.requirement, summary).value_or("");
 }
 
-/// Writes the page of an answer, with the report of its folder and mission; returns its name.
-std::string write_page(const cli::StageCall& call, const cli::AircraftAnswer& answer,
+/// The command that gives the same, with names of files without their folders: the page goes to others.
+std::string command_of(const cli::StageCall& call, const AnswerArguments& arguments) {
+    constexpr std::size_t max_names = 6;
+    std::string command = "flightwatt";
+    for (std::size_t i = 0; i < std::min(call.inputs.size(), max_names); ++i)
+        command += " " + std::filesystem::absolute(call.inputs[i]).lexically_normal().filename().string();
+    if (call.inputs.size() > max_names) command += " ...";
+    const auto add = [&](const char* option, const std::optional<double>& value) {
+        if (value) command += fmt::format(" --{} {:g}", option, *value);
+    };
+    const auto& question = arguments.question;
+    add("capacity", arguments.capacity_ah);
+    if (call.has("reserve")) add("reserve", question.reserve_soc_percent);
+    add("payload", question.payload_kg);
+    add("mass", question.takeoff_mass_kg);
+    add("airspeed", question.airspeed_m_per_s);
+    if (arguments.wind) command += " --wind " + *arguments.wind;
+    add("temperature", arguments.temperature_c);
+    add("home-distance", arguments.home_distance_m);
+    return valid_utf8(command);
+}
+
+/// Writes the page of an answer, with the report of its folder and mission; returns its name. `logs` is the call with
+/// the logs.
+std::string write_page(const cli::StageCall& logs, const AnswerArguments& arguments, const cli::AircraftAnswer& answer,
                        const mission::MissionVariant& mission) {
     const auto file = std::filesystem::path(answer.folder) / "answer.html";
     report::ReportInput input;
@@ -168,17 +192,17 @@ std::string write_page(const cli::StageCall& call, const cli::AircraftAnswer& an
     // Of an unknown capacity no charge at landing would be true.
     if (answer.endurance.cruise_s) input.missions = {mission};
     input.are_longest = answer.endurance.cruise_s.has_value();
-    input.front = report::answer_section(answer, failsafe_texts(answer.failsafe, setup_of(mission)));
+    input.answer = report::answer_json(answer, failsafe_texts(answer.failsafe, setup_of(mission)));
+    input.command = command_of(logs, arguments);
     const report::ReportLog log{[&](const std::string& text) {
-        cli::add_diagnostic(call, {Severity::note, "the page", text});
+        cli::add_diagnostic(logs, {Severity::note, "the page", text});
     }};
     try {
-        const auto web = report::read_web_files(report::web_folder());
-        const auto content = make_report(input, log);
-        write_file_atomically(file, page_html(page_head(content), content.sections, web));
+        const auto front_end = report::read_front_end(report::web_folder());
+        write_file_atomically(file, page_html(make_report(input, log).document, front_end));
         return file.string();
     } catch (const InputError& error) {
-        cli::warn(call, fmt::format("no page is written: {}; {}", error.what(), error.hint()));
+        cli::warn(logs, fmt::format("no page is written: {}; {}", error.what(), error.hint()));
         return "";
     }
 }
@@ -230,7 +254,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     const auto mission = mission::read_mission(mission_file);
     add_failsafe(arguments, aircraft, setup_of(mission), answer);
     answer.requirement_missed = missed_requirement(arguments, aircraft, mission_file);
-    if (!arguments.no_page) answer.page = write_page(call, answer, mission);
+    if (!arguments.no_page) answer.page = write_page(call, arguments, answer, mission);
 }
 
 /// The same; an obstacle is the answer.

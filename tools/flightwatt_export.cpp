@@ -303,8 +303,7 @@ Exported export_latex(const cli::StageCall& call, const ExportArguments& argumen
         throw UsageError("--capacity is that of the flights' battery: add a folder of flightwatt batch");
     const auto content = make_report(request, {[&](const std::string& text) { cli::warn(call, text); }});
     Exported result;
-    for (const auto& section : content.sections)
-        if (!section.latex.empty()) result.text += (result.text.empty() ? "" : "\n") + section.latex;
+    result.text = content.latex.text;
     for (const auto& note : content.summary.at("notes")) result.notes.push_back(note.get<std::string>());
     return result;
 }

@@ -1,12 +1,12 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "base/text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mission/mission_file.h"
-#include "report/figure.h"
-#include "report/html.h"
+#include "report/figure_files.h"
 #include "report/outline.h"
 #include "report/page.h"
 #include "report/report.h"
@@ -73,14 +73,29 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
 
 /// Where figures are wanted as files.
 void write_figure_files(const cli::StageCall& call, const ReportArguments& arguments,
-                        const std::vector<report::Section>& sections, const report::WebFiles& web) {
+                        const std::vector<report::Figure>& figures) {
     const auto& folder = arguments.figures;
     if (!folder) return;
-    const auto files = write_figures(sections, web, *folder, figure_layout(arguments));
+    const auto files =
+        write_figures(figures, report::figure_tools(report::web_folder()), *folder, figure_layout(arguments));
     cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
                                 files.has_pdf ? ", .pdf" : ""));
     if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
     if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
+}
+
+/// The command that gives the same, with names of files without their folders: the page goes to others.
+std::string command_of(const cli::StageCall& call, const ReportArguments& arguments) {
+    const auto name_of = [](const std::string& file) {
+        return std::filesystem::absolute(file).lexically_normal().filename().string();
+    };
+    std::string command = "flightwatt report";
+    for (const auto& input : call.inputs) command += " " + name_of(input);
+    if (arguments.capacity_ah) command += fmt::format(" --capacity {:g}", *arguments.capacity_ah);
+    if (arguments.published) command += " --published " + name_of(*arguments.published);
+    if (arguments.outline) command += " --outline " + name_of(*arguments.outline);
+    if (arguments.with_replay) command += " --replay";
+    return valid_utf8(command + " -o " + name_of(call.output.value_or("report.html")));
 }
 
 report::ReportLog log_of(const cli::StageCall& call) {
@@ -105,17 +120,19 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     const bool wants_page = call.output || (!call.json && !arguments.figures);
     if (wants_page && !call.output && ::isatty(STDOUT_FILENO) == 1)
         throw UsageError("a page is not for a terminal: expected -o FILE.html");
-    std::optional<report::WebFiles> web;  // read first: missing files are an error before any work
-    if (wants_page || arguments.figures) web = report::read_web_files(report::web_folder());
-    const auto content = make_report(input, log_of(call));
-    auto head = page_head(content);
-    if (arguments.title) head.title = head.name = valid_utf8(*arguments.title);
-    if (web) write_figure_files(call, arguments, content.sections, *web);
-    if (wants_page) cli::write_result(call, page_html(head, content.sections, *web));
+    std::optional<report::FrontEnd> front_end;  // read first: missing files are an error before any work
+    if (wants_page) front_end = report::read_front_end(report::web_folder());
+    if (arguments.figures) report::figure_tools(report::web_folder());
+    input.with_figures = call.json || arguments.figures;
+    input.command = command_of(call, arguments);
+    auto content = make_report(input, log_of(call));
+    if (arguments.title)
+        for (const auto* key : {"title", "name"}) content.document[key] = valid_utf8(*arguments.title);
+    write_figure_files(call, arguments, content.figures);
+    if (wants_page) cli::write_result(call, page_html(content.document, *front_end));
     if (!call.json) return cli::ok;
-    auto summary = content.summary;
-    summary["title"] = head.title;
-    cli::print(cli::json_text(cli::json_document(call, summary)));
+    content.summary["title"] = content.document["title"];
+    cli::print(cli::json_text(cli::json_document(call, content.summary)));
     return cli::ok;
 }
 
@@ -125,9 +142,8 @@ int flightwatt::stages::report_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
-validation, battery) and of missions (software, schedules, quality of service). Its figures are
-Vega-Lite specifications with their data; --figures writes them as files for papers: .vl.json, .svg (by node)
-and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
+validation, battery) and of missions (software, schedules, quality of service). --figures writes figures for
+papers: .vl.json (Vega-Lite with the data), .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
     stage.next = [](const auto&) { return "open it in a browser"; };
     stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };
     stage.examples = {"flightwatt report my missions/first.toml -o report.html",

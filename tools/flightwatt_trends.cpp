@@ -11,7 +11,7 @@
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
 #include "report/batch_content.h"
-#include "report/trends_section.h"
+#include "report/flight_trends.h"
 #include "stages.h"
 
 #include <algorithm>

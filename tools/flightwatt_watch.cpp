@@ -41,7 +41,7 @@ class LivePage {
              const compute::ComputeModel& compute, const std::optional<live::PredictionInput>& basis)
         : compute_(compute), basis_(basis) {
         if (!address) return;
-        const auto web = report::read_live_web_files(report::web_folder());
+        const auto web = report::read_live_files(report::web_folder());
         server_.emplace(*address, report::live_page_html(web));
         cli::note(call, "the page is at " + server_->address());
         if (!server_->is_local())

@@ -9,8 +9,6 @@ const [width, height] = rest.slice(0, 2).map(Number);
 const names = rest.slice(2);
 const here = path.dirname(new URL(import.meta.url).pathname);
 const script = (name) => readFile(path.join(here, name), "utf8");
-const fitWidth = vm.runInThisContext(`(${await script("fit_width.js")})`);
-// The same files as in the page.
 for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
 const { vega, vegaLite } = globalThis;
 const letter = 0.54; // mean width of a letter [type sizes]; Vega's estimate of 0.8 leaves gaps and cuts names
@@ -18,7 +16,7 @@ const wide = /[\dA-Zmw%+−]/g;
 vega.textMetrics.width = ({ fontSize = 11, limit }, text) => Math.min(limit ? 1.1 * limit : Infinity, fontSize * (letter * String(text ?? "").length + 0.1 * (String(text ?? "").match(wide)?.length ?? 0)));
 const typed = letter * (32 / 3); // of a letter in papers [px]
 
-/** Without the transparent points of the page's tooltips, which only enlarge the file. */
+/** Without the transparent points of tooltips, which only enlarge the file. */
 function still(part) {
   if (Array.isArray(part)) return part.map(still);
   if (part === null || typeof part !== "object") return part;
@@ -26,6 +24,39 @@ function still(part) {
 }
 
 const inside = (part, change) => (Array.isArray(part) ? part.map(change) : part !== null && typeof part === "object" ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, change(value)])) : part);
+
+/**
+ * Fits a figure into a room [px] on a paper of `width`: panels side by side are stacked where they would be too narrow, rows
+ * are evenly long, every panel with a width gets the available one (squares remain squares), and names at the side are
+ * limited.
+ */
+function fitWidth(spec, room) {
+  const minPanel = 90; // two panels fit into 3.5 inches
+  const axis = 52; // y axis with its names and title
+  const margin = Math.min(spec.usermeta?.margin_px || axis, Math.max(axis, 0.3 * room));
+  const fitNames = (part) => {
+    const fitted = inside(part, fitNames);
+    if (fitted === part) return part;
+    // A name above a panel has the panel's width, one at its side less.
+    const above = room < 2 * (minPanel + margin) ? room - margin : Math.max(minPanel, 0.22 * room);
+    if (fitted.type === "text" && fitted.limit) fitted.limit = Math.min(fitted.limit, fitted.baseline === "alphabetic" ? above : 0.22 * room);
+    if (fitted.axis?.labelLimit) fitted.axis.labelLimit = Math.min(fitted.axis.labelLimit, margin - 20);
+    return fitted;
+  };
+  const fit = (part, of, all) => {
+    if (part.concat) {
+      const most = Math.max(1, Math.min(3, Math.floor(all / (minPanel + margin))));
+      const columns = Math.ceil(part.concat.length / Math.ceil(part.concat.length / most));
+      return { ...part, columns, concat: part.concat.map((panel) => fit(panel, of / columns, all / columns)) };
+    }
+    if (part.vconcat) return { ...part, vconcat: part.vconcat.map((panel) => fit(panel, of, all)) };
+    const wide = Math.max(60, Math.floor(of - margin));
+    if (part.width === undefined) return part;
+    const side = Math.min(wide, part.width);
+    return part.width === part.height ? { ...part, width: side, height: side } : { ...part, width: wide };
+  };
+  return fit(fitNames(spec), room, width);
+}
 
 /** With the panels' time axes in minutes where `isLong` holds for the panel's number. */
 function inMinutes(part, isLong, panel = 0) {
@@ -115,7 +146,7 @@ async function withMinutes(spec) {
 async function render(wanted, room, factor) {
   const { config } = wanted; // legends in rows
   const spec = width < 420 ? { ...wanted, config: { ...config, legend: { ...config.legend, layout: { top: { direction: "vertical", anchor: "start", margin: 2, bounds: "full" } } } } } : wanted;
-  const view = await viewOf(readable(flattened(fitWidth(spec, room, width), factor)));
+  const view = await viewOf(readable(flattened(fitWidth(spec, room), factor)));
   const svg = await view.toSVG();
   view.finalize();
   const [wide, tall] = ["width", "height"].map((side) => Number(svg.match(new RegExp(`<svg[^>]* ${side}="([\\d.]+)"`))[1]));

@@ -1,6 +1,7 @@
 #include "report/batch_content.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/units.h"
 #include "batch/batch_files.h"
 #include "batch/batch_run.h"
@@ -106,6 +107,10 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         content.flights.push_back(std::move(flight));
     }
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
+    for_each_in_parallel(content.flights.size(), [&](std::size_t i) {
+        auto& flight = content.flights[i];
+        if (flight.rejected.empty()) flight.facts = summarize_flight(flight);
+    });
     return content;
 }
 

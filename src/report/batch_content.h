@@ -12,6 +12,21 @@
 
 namespace flightwatt::report {
 
+/// Date, times, distances and energy of a flight.
+struct FlightSummary {
+    std::optional<double> start_clock_s;   ///< Unix time: UTC of the .log, or the time in its name
+    std::string date;                      ///< the same as "2020-07-03 12:17"; empty if unknown
+    double in_air_s = 0.0;                 ///< time in the air
+    std::optional<double> distance_m;      ///< distance over ground, while in the air
+    std::optional<double> air_distance_m;  ///< distance through the air, if airspeed was logged
+    std::optional<double> height_m;        ///< maximum above the ground at lift-off
+    std::optional<double> energy_wh;       ///< while in the air
+    std::optional<double> counter_wh;      ///< the same by the autopilot's counter
+    flight::PerPhase<double> duration_s;
+    flight::PerPhase<std::optional<double>> mean_power_w;
+    std::optional<double> cruise_airspeed_m_per_s;  ///< mean
+};
+
 /// One log of a batch with its results.
 struct ReportFlight {
     std::string name;
@@ -24,6 +39,7 @@ struct ReportFlight {
     std::vector<std::string> exclusions = {};  ///< parts that the fit does not use, with reasons
     std::string unusable_power = {};           ///< reason why its power record is not used; empty if it is
     batch::FlightAircraft aircraft = {};       ///< aircraft of an accepted flight
+    FlightSummary facts = {};                  ///< of an accepted flight in a batch's folder
 };
 
 /// Returns the use of a flight in the fit: "all", "in part" or "no".
@@ -47,21 +63,6 @@ std::string aircraft_mix(const BatchContent& content);
 
 /// Returns the content's `measured` with the power of the flights' series, for a replay.
 std::vector<mechanical::MeasuredFlight> flights_with_power(const BatchContent& content);
-
-/// Date, times, distances and energy of a flight.
-struct FlightSummary {
-    std::optional<double> start_clock_s;   ///< Unix time: UTC of the .log, or the time in its name
-    std::string date;                      ///< the same as "2020-07-03 12:17"; empty if unknown
-    double in_air_s = 0.0;                 ///< time in the air
-    std::optional<double> distance_m;      ///< distance over ground, while in the air
-    std::optional<double> air_distance_m;  ///< distance through the air, if airspeed was logged
-    std::optional<double> height_m;        ///< maximum above the ground at lift-off
-    std::optional<double> energy_wh;       ///< while in the air
-    std::optional<double> counter_wh;      ///< the same by the autopilot's counter
-    flight::PerPhase<double> duration_s;
-    flight::PerPhase<std::optional<double>> mean_power_w;
-    std::optional<double> cruise_airspeed_m_per_s;  ///< mean
-};
 
 /// Summarizes an accepted flight, or one of its sorties, counted from 0.
 FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::size_t> sortie = std::nullopt);

@@ -8,20 +8,10 @@
 #include <iterator>
 #include <numeric>
 
-#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::report {
-namespace {
-
-/// The nearest number with `decimals` decimals; never -0.
-double rounded(double number, int decimals) {
-    const double scale = std::pow(10.0, decimals);
-    return std::round(number * scale) / scale + 0.0;
-}
-
-}  // namespace
 
 VegaJson figure_template(std::string_view name) { return VegaJson::parse(web_templates().at(name)); }
 
@@ -41,8 +31,7 @@ VegaJson fill_template(VegaJson part, const VegaJson& values) {
     return part;
 }
 
-Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
-                  const VegaJson& values) {
+Figure new_figure(std::string_view name, std::string id, std::string description, const VegaJson& values) {
     auto spec = fill_template(figure_template(name), values);
     if (values.contains("panels")) {
         const auto panel = spec["concat"][0];
@@ -50,7 +39,7 @@ Figure new_figure(std::string_view name, std::string id, std::string caption, st
         for (const auto& of_panel : values["panels"]) spec["concat"].push_back(fill_template(panel, of_panel));
     }
     spec["description"] = valid_utf8(description);
-    return {std::move(id), std::move(caption), std::move(description), std::move(spec)};
+    return {std::move(id), std::move(description), std::move(spec)};
 }
 
 FigureData::FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts)
@@ -60,24 +49,35 @@ FigureData::FigureData(std::initializer_list<std::string> numbers, std::initiali
     csv_ = fmt::format("{}", fmt::join(columns, ","));
 }
 
-void FigureData::add(std::initializer_list<double> numbers, std::initializer_list<std::string_view> texts) {
+void FigureData::add(const std::vector<double>& numbers, const std::vector<std::string>& texts) {
     std::string row;
-    std::size_t column = 0;
     for (const double number : numbers) {
-        if (std::isfinite(number)) {
-            if (decimals_.empty()) {
-                fmt::format_to(std::back_inserter(row), "{:.6g}", number);
-            } else {
-                fmt::format_to(std::back_inserter(row), "{}", rounded(number, decimals_.at(column)));
-            }
-        }
+        constexpr double max_of_digits = 1e7;  // larger: times [ms]
+        if (std::abs(number) < max_of_digits)
+            fmt::format_to(std::back_inserter(row), "{:.7g}", number + 0.0);
+        else if (std::isfinite(number))
+            fmt::format_to(std::back_inserter(row), "{:.0f}", number);
         row += ',';
-        ++column;
     }
-    for (const auto text : texts) row.append(csv_cell(valid_utf8(text))).append(",");
+    for (const auto& text : texts) row.append(csv_cell(valid_utf8(text))).append(",");
     row.pop_back();
     csv_.append("\n").append(row);
     ++rows_;
+}
+
+void FigureData::add_columns(const VegaJson& part, const std::vector<std::string>& keys,
+                             const std::vector<VegaJson>& texts) {
+    std::vector<double> numbers(keys.size());
+    std::vector<std::string> words(texts.size());
+    for (std::size_t i = 0; i < part.at(keys.front()).size(); ++i) {
+        for (std::size_t k = 0; k < keys.size(); ++k) {
+            const auto& cell = part.at(keys[k]).at(i);
+            numbers[k] = cell.is_null() ? std::nan("") : cell.get<double>();
+        }
+        for (std::size_t t = 0; t < texts.size(); ++t)
+            words[t] = (texts[t].is_array() ? texts[t].at(i) : texts[t]).get<std::string>();
+        add(numbers, words);
+    }
 }
 
 VegaJson FigureData::json() const {
@@ -109,11 +109,6 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
         first = end;
     }
     return kept;
-}
-
-std::string script_json(const VegaJson& json) {
-    const auto text = json.dump(-1, ' ', false, VegaJson::error_handler_t::replace);
-    return boost::replace_all_copy(text, "<", "\\u003c");  // no </script> and no <!--
 }
 
 }  // namespace flightwatt::report

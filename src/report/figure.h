@@ -16,12 +16,12 @@ namespace flightwatt::report {
 
 using VegaJson = nlohmann::ordered_json;
 
-/// A Vega-Lite specification with its data and texts; the page draws it, and --figures writes it to a file.
+/// A Vega-Lite specification with its data and texts, for a file.
 struct Figure {               // NOLINT(bugprone-exception-escape): of nlohmann's moves
     std::string id;           ///< name of its file: letters, digits and '-'
-    std::string caption;      ///< below the figure
-    std::string description;  ///< its data in words, for screen readers
+    std::string description;  ///< its data in words
     VegaJson spec;
+    std::string section = {};  ///< what it is about: "Flights"
 };
 
 /// Returns the files of web/figures and the pages of web, built into the program, by their names without endings.
@@ -36,19 +36,20 @@ VegaJson fill_template(VegaJson part, const VegaJson& values);
 
 /// Returns a figure of the template `name`, filled with `values`. If these have "panels", the template's panel in
 /// "concat" is repeated with each of them.
-Figure new_figure(std::string_view name, std::string id, std::string caption, std::string description,
-                  const VegaJson& values = {});
+Figure new_figure(std::string_view name, std::string id, std::string description, const VegaJson& values = {});
 
-/// The data of a figure as Vega-Lite's inline CSV: columns of numbers, with six digits, then columns of texts. Infinity
+/// The data of a figure as Vega-Lite's inline CSV: columns of numbers, with seven digits, then columns of texts. Infinity
 /// and NaN are empty cells (gaps in a line).
 class FigureData {
   public:
     /// Begins a table with the names of its columns.
     FigureData(std::initializer_list<std::string> numbers, std::initializer_list<std::string> texts = {});
-    /// Sets decimals of the columns of numbers instead of six digits; to be called before any row.
-    void round_to(std::vector<int> decimals) { decimals_ = std::move(decimals); }
     /// Adds a row.
-    void add(std::initializer_list<double> numbers, std::initializer_list<std::string_view> texts = {});
+    void add(const std::vector<double>& numbers, const std::vector<std::string>& texts = {});
+    /// Adds a row for each element of the columns `keys` of `part`, null being NaN. A text is that of every row, or an
+    /// array with one for each.
+    void add_columns(const VegaJson& part, const std::vector<std::string>& keys,
+                     const std::vector<VegaJson>& texts = {});
     bool empty() const { return rows_ == 0; }
     /// Returns the table for a specification's "data".
     VegaJson json() const;
@@ -57,7 +58,6 @@ class FigureData {
 
   private:
     std::vector<std::string> numbers_;
-    std::vector<int> decimals_;  ///< of the columns of numbers; empty: six digits each
     std::string csv_;
     std::size_t rows_ = 0;
 };
@@ -77,8 +77,5 @@ std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t c
         chosen.push_back(values[count == 1 ? 0 : i * (values.size() - 1) / (count - 1)]);
     return chosen;
 }
-
-/// Returns JSON without '<', for an HTML script element.
-std::string script_json(const VegaJson& json);
 
 }  // namespace flightwatt::report

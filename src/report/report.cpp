@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "batch/manifest.h"
 #include "cli/output/fit_output.h"
 #include "cli/output/pack_output.h"
@@ -11,15 +12,14 @@
 #include "mission/mission_file.h"
 #include "mission/mission_read_options.h"
 #include "mission/replay.h"
-#include "report/sections/aircraft_panel.h"
-#include "report/sections/battery_section.h"
-#include "report/sections/flights_section.h"
-#include "report/sections/missions_section.h"
-#include "report/sections/model_section.h"
-#include "report/sections/page_summary.h"
-#include "report/sections/summary_section.h"
-#include "report/sections/tracks_section.h"
-#include "report/trends_section.h"
+#include "report/document/aircraft_panel.h"
+#include "report/document/battery_document.h"
+#include "report/document/findings.h"
+#include "report/document/flights_document.h"
+#include "report/document/missions_document.h"
+#include "report/document/model_document.h"
+#include "report/figures/figures.h"
+#include "report/flight_trends.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -37,14 +37,36 @@
 namespace flightwatt::report {
 namespace {
 
-/// The report while its sections are added.
+/// The report while its parts are added.
 struct Draft {
     const ReportInput& input;
     const ReportLog& log;
     ReportContent content = {};
-    PageSummary answers = {};
+    Findings findings = {};
     std::vector<mechanical::MechanicalModel> models = {};  ///< the batch's, if it has one
+
+    void add_figure(Figure figure, std::string section) {
+        figure.section = std::move(section);
+        content.figures.push_back(std::move(figure));
+    }
+    void add_fact(const char* name, std::string text) {
+        content.document["facts"].push_back({{"name", name}, {"text", std::move(text)}});
+    }
 };
+
+/// A document without any part.
+Json empty_document() {
+    auto document = Json::object();
+    document["format"] = 1;
+    document["program"] = "flightwatt " FLIGHTWATT_VERSION;
+    for (const auto* key : {"title", "name", "command", "headline"}) document[key] = "";
+    for (const auto* key : {"facts", "aircraft", "missions", "quality", "software", "packs", "flights", "exclusions",
+                            "outlines", "models", "warnings", "notes"})
+        document[key] = Json::array();
+    for (const auto* key : {"answer", "panel", "schedules", "physical", "validation", "battery", "trends", "replay"})
+        document[key] = nullptr;
+    return document;
+}
 
 std::string origin_of_model(const BatchContent& batch) {
     const auto& options = batch.fit->options;
@@ -53,37 +75,46 @@ std::string origin_of_model(const BatchContent& batch) {
                        any_synthetic(batch.flights) ? " SYNTHETIC flights are simulated, not flown." : "");
 }
 
+void add_model(Draft& page, const ReportModel& model, const std::string& id) {
+    auto& models = page.content.document["models"];
+    models.push_back(model_json(model));
+    if (page.input.with_figures)
+        page.add_figure(model_figure(models.back(), id + "-curves"),
+                        "Mechanical model: " + valid_utf8(model.model.name));
+}
+
 /// The flights' model with its validation.
-void add_model(Draft& page, const BatchContent& batch) {
-    auto& notes = page.answers.notes;
-    auto& sections = page.content.sections;
+void add_fit(Draft& page, const BatchContent& batch) {
+    auto& notes = page.findings.notes;
+    auto& [document, figures, latex, summary] = page.content;
     if (!batch.fit) {
         notes.emplace_back("There is no model of these flights: the batch could not fit them.");
         return;
     }
     const auto& fitted = batch.fit->model;
     page.models.push_back(fitted);
-    page.answers.warnings = model_warnings(fitted);
-    page.answers.model = fitted;
+    page.findings.warnings = model_warnings(fitted);
+    page.findings.model = fitted;
     const auto& published = page.input.published_file;
     ReportModel model{fitted, origin_of_model(batch), batch.fit->bands};
     model.table_one = cli::model_table(
         fitted, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
         mechanical::TableIntervals::present);
-    sections.push_back(model_section(model, "model"));
-    sections.back().latex = model_latex(fitted);
+    add_model(page, model, "model");
+    LatexTables of_physical;
+    if (batch.measured.size() >= 2) document["physical"] = physical_json(batch.measured, of_physical);
+    auto curves = fitted;
+    if (!document["physical"].is_null()) curves.physical.reset();  // its constants are in those tables
+    latex.add(model_latex(curves));
+    latex.add(of_physical.text);
     if (batch.measured.size() < 2) {
         notes.emplace_back(
             "The model is not validated: that needs 2 flights, of which each is predicted by the other.");
         return;
     }
-    if (auto section = physical_section(batch.measured)) {
-        auto curves = fitted;
-        curves.physical.reset();  // its constants are in that section
-        sections.back().latex = model_latex(curves);
-        sections.push_back(std::move(*section));
-    }
-    auto& validated = page.answers.validated;
+    if (page.input.with_figures && !document["physical"].is_null())
+        page.add_figure(physical_figure(document["physical"], "physical-power"), "Power from airspeed and climb");
+    auto& validated = page.findings.validated;
     const auto chosen = mechanical::validated_flights(batch.measured);
     validated = leave_one_out(chosen, batch.fit->options, page.log.progress("fits"));
     if (chosen.size() < batch.measured.size())
@@ -91,7 +122,10 @@ void add_model(Draft& page, const BatchContent& batch) {
             fmt::format("The model is validated on {} of {} flights, evenly chosen, as by flightwatt batch.",
                         chosen.size(), batch.measured.size()));
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");
-    sections.push_back(validation_section(validated, any_synthetic(batch.flights)));
+    document["validation"] = validation_json(validated, any_synthetic(batch.flights), latex);
+    if (page.input.with_figures)
+        page.add_figure(validation_figure(document["validation"], "validation-errors"),
+                        "Validation against the baselines");
 }
 
 /// Flights, model, validation and battery.
@@ -99,28 +133,35 @@ void add_batch(Draft& page, const BatchContent& batch) {
     for (const auto& damaged : batch.damaged) page.log.warn(damaged);
     const auto mix = aircraft_mix(batch);
     std::future<ReportBattery> battery;
-    if (mix.empty())  // of many flights, it takes as long as their figures do
+    if (mix.empty())  // takes as long as the model's validation
         battery = std::async(std::launch::async, [&] {
             battery::IdentificationOptions options;
             options.capacity_ah = page.input.capacity_ah;
             return identify_for_report(batch.flights, options, max_battery_flights, page.input.missions);
         });
-    auto& sections = page.content.sections;
-    sections.push_back(flights_section(batch, page.log.progress("flights")));
-    const auto shown = sections.size();
-    add_model(page, batch);
+    auto& [document, figures, latex, summary] = page.content;
+    LatexTables of_flights;
+    std::swap(latex, of_flights);
+    add_fit(page, batch);
+    std::swap(latex, of_flights);
     std::optional<ReportBattery> found;
     if (mix.empty())
         found = battery.get();
     else
-        page.answers.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
-    if (found) {
-        sections.push_back(battery_section(*found));
-        page.answers.pack = found->identified;
-    }
-    for (auto i = shown; i < sections.size(); ++i) sections[i].place = SectionPlace::folded;
-    if (auto tracks = tracks_section(batch, found ? &*found : nullptr, page.input.outlines))
-        sections.insert(sections.begin() + static_cast<std::ptrdiff_t>(shown), std::move(*tracks));
+        page.findings.notes.push_back("There is no battery of flights of several aircraft: " + mix + ".");
+    auto flights =
+        make_flights(batch, found ? &*found : nullptr, page.input.with_figures, latex, page.log.progress("flights"));
+    document["flights"] = std::move(flights.flights);
+    document["exclusions"] = std::move(flights.exclusions);
+    for (auto& figure : flights.figures) page.add_figure(std::move(figure), "Flights");
+    latex.add(of_flights.text);
+    if (!found) return;
+    page.findings.pack = found->identified;
+    auto& json = document["battery"] = battery_json(*found, latex);
+    for (const auto& group : group_exclusions(found->exclusions)) document["exclusions"].push_back(record_json(group));
+    if (!found->identified || !page.input.with_figures) return;
+    page.add_figure(voltage_figure(json, "battery-voltage"), "Battery");
+    page.add_figure(open_circuit_figure(json, "battery-open-circuit"), "Battery");
 }
 
 /// Trends of aircraft and packs over their flights' dates, where there are any.
@@ -141,34 +182,58 @@ void add_trends(Draft& page, const BatchContent& batch) {
     auto uses = take_uses(flights);
     auto notes = answer::name_packs(uses, answer::read_packs_beside(folders));
     const bool is_named = std::ranges::any_of(uses, [](const auto& use) { return !use.pack.empty(); });
-    if (!is_named && !trends_section(estimate_trends(flights), {}))
+    LatexTables unused;
+    if (!is_named && trends_json(estimate_trends(flights), {}, unused).is_null())
         return;  // without dates, packs have no trend either: saves their time
     auto ledger = add_state_of_health(flights, std::move(uses), {page.input.capacity_ah, max_battery_flights});
     std::ranges::move(notes, std::back_inserter(ledger.notes));
-    auto section = trends_section(estimate_trends(flights), ledger);
-    section->place = SectionPlace::folded;
-    page.content.sections.push_back(std::move(*section));
+    const auto trends = estimate_trends(flights);
+    const auto& json = page.content.document["trends"] = trends_json(trends, ledger, page.content.latex);
+    std::set<std::string> aircraft;
+    for (const auto& trend : trends)
+        if (trend.answer.trend) aircraft.insert(trend.aircraft);
+    std::size_t number = 0;
+    for (const auto& name : aircraft)
+        if (page.input.with_figures)
+            page.add_figure(trends_figure(json, name, fmt::format("trends-{}", ++number)), "Packs and trends");
 }
 
 void add_missions(Draft& page) {
     const auto& missions = page.input.missions;
+    auto& [document, figures, latex, summary] = page.content;
     std::vector<std::string> files;  // the page goes to others: without the folders
     files.reserve(missions.size());
     for (const auto& mission : missions)
         files.push_back(std::filesystem::path(setup_of(mission).file).filename().string());
     files.erase(std::unique(files.begin(), files.end()), files.end());  // a file may be several flights
-    page.content.facts.emplace_back("missions", fmt::format("{}", fmt::join(files, ", ")));
+    page.add_fact("missions", fmt::format("{}", fmt::join(files, ", ")));
     auto simulated = simulate_for_report(missions, page.log.progress("missions"));
     for (auto& one : simulated) one.is_longest = page.input.are_longest;
-    for (const auto i : worst_first(simulated)) page.answers.missions.push_back(std::move(simulated[i]));
+    auto& flown = page.findings.missions;
+    for (const auto i : worst_first(simulated)) flown.push_back(std::move(simulated[i]));
     const auto progress = page.log.progress("answers");
-    for (const auto& one : page.answers.missions) {
-        if (progress) progress(page.answers.answers.size(), missions.size());
-        page.answers.answers.push_back(assess_mission(one, [&](const mission::MissionReadOptions& reading) {
+    for (const auto& one : flown) {
+        if (progress) progress(page.findings.assessments.size(), missions.size());
+        page.findings.assessments.push_back(assess_mission(one, [&](const mission::MissionReadOptions& reading) {
             return mission::read_mission(one.mission.setup.file, reading);
         }));
     }
-    std::ranges::move(mission_sections(page.answers.missions, page.models), std::back_inserter(page.content.sections));
+    std::vector<Figure> maps;
+    document["quality"] = quality_json(flown, page.input.with_figures ? &maps : nullptr);
+    for (auto& map : maps) page.add_figure(std::move(map), "Quality of service");
+    std::size_t number = 0;
+    for (const auto& model : other_models(flown, page.models))
+        add_model(page, {model, "The missions' model.", {}, table_one(model)},
+                  fmt::format("mission-model-{}", ++number));
+    document["software"] = software_json(flown);
+    document["schedules"] = schedule_notes(flown);
+    document["missions"] = missions_json(page.findings, latex);
+    if (!page.input.with_figures) return;
+    number = 0;
+    for (const auto& software : document["software"])
+        page.add_figure(profile_figure(software, fmt::format("profile-{}", ++number)), "Computing profile");
+    page.add_figure(schedule_figure(document["missions"], "schedules-soc"),
+                    "Schedules, and what differs between drawn flights");
 }
 
 /// The missions on the power that the batch's flights measured.
@@ -215,18 +280,18 @@ Fields<PageOutput> record_fields(const PageOutput*) {
 }
 
 Json summary_json(const Draft& page, const BatchContent& batch) {
-    PageOutput output{.title = {},
+    PageOutput output{.title = page.content.document["title"],
                       .missions = {},
-                      .aircraft = aircraft_lines(batch.flights),
-                      .prediction = prediction_line(page.answers, any_synthetic(batch.flights)),
-                      .warnings = page.answers.warnings,
-                      .notes = page.answers.notes,
+                      .aircraft = {},
+                      .prediction = prediction_line(page.findings, any_synthetic(batch.flights)),
+                      .warnings = page.findings.warnings,
+                      .notes = page.findings.notes,
                       .figures = {}};
-    for (const auto& section : page.content.sections)
-        for (const auto& figure : section.figures)
-            output.figures.push_back({figure.id, section.title, figure.description});
-    for (std::size_t i = 0; i < page.answers.missions.size(); ++i)
-        output.missions.push_back({&page.answers.missions[i], &page.answers.answers[i]});
+    for (const auto& [name, text] : aircraft_lines(batch.flights)) output.aircraft.push_back(name + ": " + text);
+    for (const auto& figure : page.content.figures)
+        output.figures.push_back({figure.id, figure.section, figure.description});
+    for (std::size_t i = 0; i < page.findings.missions.size(); ++i)
+        output.missions.push_back({&page.findings.missions[i], &page.findings.assessments[i]});
     return record_json(output);
 }
 
@@ -245,46 +310,46 @@ std::string time_of_report() {
 
 ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     Draft page{input, log};
-    auto& [title, facts, sections, summary] = page.content;
+    auto& [document, figures, latex, summary] = page.content;
+    document = empty_document();
+    page.add_fact("computed", time_of_report());
+    page.add_fact("by", "flightwatt " FLIGHTWATT_VERSION);
     BatchContent batch;
     if (!input.out.empty()) {
         batch = read_batch_content(input.out);
-        facts.emplace_back("flights",
-                           fmt::format("{} logs, from {}", batch.flights.size(),
-                                       std::filesystem::absolute(input.out).lexically_normal().filename().string()));
+        page.add_fact("flights",
+                      fmt::format("{} logs, from {}", batch.flights.size(),
+                                  std::filesystem::absolute(input.out).lexically_normal().filename().string()));
     }
     std::vector<mission::Replay> replays;
     if (input.with_replay) replays = replay_missions(input, batch, log);
+    document["packs"] = packs_json(input.packs, latex);
     if (!input.out.empty()) {
         add_batch(page, batch);
         add_trends(page, batch);
     }
     if (!input.missions.empty()) add_missions(page);
-    if (!input.packs.empty()) sections.push_back(packs_section(input.packs));
-    if (!replays.empty()) {
-        sections.push_back(replay_section(replays));
-        sections.back().place = SectionPlace::folded;
-    }
+    auto& findings = page.findings;
+    if (!replays.empty()) document["replay"] = replay_json(replays, latex);
     if (input.with_replay && replays.empty())
-        page.answers.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
-    // What missions answer stands before the flights.
-    std::stable_partition(sections.begin(), sections.end(), [](const Section& section) {
-        return section.id == "packs" || section.id == "curves" || section.id == "quality-of-service";
-    });
-    sections.insert(sections.begin(), summary_section(page.answers, batch.flights, input.front ? "h2" : "h1"));
-    if (input.front) sections.insert(sections.begin(), *input.front);
-    if (auto notes = notes_section(page.answers)) sections.push_back(std::move(*notes));
-    title = page_title(batch.flights, page.answers.missions.size());
+        findings.notes.emplace_back("There is no replay: no mission could be replayed on any flight.");
+    const auto aircraft = aircraft_lines(batch.flights);
+    document["title"] = page_title(batch.flights, findings.missions.size());
+    document["name"] = "FlightWatt report";
+    document["command"] = input.command;
+    document["headline"] = !findings.missions.empty() ? missions_headline(findings)
+                           : aircraft.empty()
+                               ? "No flights"
+                               : fmt::format("{}: {} and no mission", aircraft.front().name,
+                                             aircraft.front().text.substr(0, aircraft.front().text.find(" \u00b7")));
+    document["aircraft"] = json_list<AircraftLine>(aircraft);
+    document["answer"] = input.answer;
+    document["panel"] = aircraft_panel(findings, batch.flights);
+    document["outlines"] = input.outlines;
+    document["warnings"] = findings.warnings;
+    document["notes"] = findings.notes;
     summary = summary_json(page, batch);
     return std::move(page.content);
-}
-
-PageHead page_head(const ReportContent& content) {
-    PageHead head{.title = content.title,
-                  .name = "FlightWatt report",
-                  .facts = {{"computed", time_of_report()}, {"by", "flightwatt " FLIGHTWATT_VERSION}}};
-    std::ranges::copy(content.facts, std::back_inserter(head.facts));
-    return head;
 }
 
 std::string model_latex(const mechanical::MechanicalModel& model) {

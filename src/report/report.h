@@ -4,9 +4,10 @@
 #include "mission/packs.h"
 #include "record/record.h"
 #include "report/batch_content.h"
-#include "report/html.h"
+#include "report/figure.h"
+#include "report/latex_tables.h"
 #include "report/outline.h"
-#include "report/page.h"
+#include "report/progress.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -16,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-/// The report of a folder of flightwatt batch and of missions: the sections of a page, and LaTeX tables.
+/// The report of a folder of flightwatt batch and of missions: the document of a page, figures, and LaTeX tables.
 namespace flightwatt::report {
 
 /// Receives the report's warnings and progress.
@@ -40,23 +41,23 @@ struct ReportInput {
     std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery
     bool with_replay = false;                        ///< with the missions replayed on the flights
     std::vector<Outline> outlines = {};              ///< drawn below the flown tracks
-    std::optional<Section> front = {};               ///< before all others, with the heading of the page
+    bool with_figures = false;                       ///< also makes figures for papers
+    Json answer = nullptr;                           ///< of flightwatt LOG... (AnswerDocument)
+    std::string command = {};                        ///< that makes the page
 };
 
 /// The content of a report.
 struct ReportContent {
-    std::string title;                                       ///< aircraft, flights with their dates, missions
-    std::vector<std::pair<std::string, std::string>> facts;  ///< "flights" - "3 logs, from out", ...
-    std::vector<Section> sections;                           ///< the summary first
-    Json summary;                                            ///< JSON of --json, with an empty title
+    Json document;                ///< ReportDocument of web/app/src/documents.ts
+    std::vector<Figure> figures;  ///< if they are wanted
+    LatexTables latex;
+    Json summary;  ///< JSON of --json, with the title
 };
 
-/// Makes a report. Throws InputError as read_batch_content(), and UsageError for a capacity that flights contradict.
+/// Makes a report, computed now or at SOURCE_DATE_EPOCH (reproducible-builds.org). Throws InputError as
+/// read_batch_content(), and UsageError for a capacity that flights contradict and a SOURCE_DATE_EPOCH that is not in
+/// seconds.
 ReportContent make_report(const ReportInput& input, const ReportLog& log);
-
-/// Returns the head of a report's page, with the time now, or that of SOURCE_DATE_EPOCH (reproducible-builds.org).
-/// Throws UsageError for a SOURCE_DATE_EPOCH that is not in seconds.
-PageHead page_head(const ReportContent& content);
 
 /// Returns Table I and the constants of the physical model as LaTeX.
 std::string model_latex(const mechanical::MechanicalModel& model);
