@@ -34,14 +34,28 @@ interface Selection {
   selectFlight: (flight: number) => void;
 }
 
-function Missions({ of, selection }: { of: ReportDocument; selection: Selection }) {
-  const { missions, panel, flights } = of;
+interface PartProps {
+  of: ReportDocument;
+  selection: Selection;
+}
+
+function AnswerPart({ of, selection }: PartProps) {
+  const [mission] = of.missions;
+  if (!of.answer) return null;
+  return <Answer answer={of.answer} panel={aircraftPanel(of, selection)} curve={of.missions.length === 1 && mission && <MissionCard mission={mission} index={0} count={1} />} />;
+}
+
+const aircraftPanel = (of: ReportDocument, selection: Selection) =>
+  of.panel && <Panel panel={of.panel} flights={of.flights} notes={of.warnings.length + of.notes.length} onFlight={selection.selectFlight} />;
+
+function Missions({ of, selection }: PartProps) {
+  const { missions } = of;
   const mission = missions[selection.mission];
-  const shown = panel && <Panel panel={panel} flights={flights} notes={of.warnings.length + of.notes.length} onFlight={selection.selectFlight} />;
+  const shown = !of.answer && aircraftPanel(of, selection);
   if (!mission) return <div class="panel-wide">{shown}</div>;
   return (
     <div class="grid">
-      <div class={panel ? "three-quarters" : ""}>
+      <div class={shown ? "three-quarters" : ""}>
         <MissionCard mission={mission} index={selection.mission} count={missions.length} />
         {missions.length > 1 && <MissionTable missions={missions} selected={selection.mission} onSelect={selection.selectMission} />}
       </div>
@@ -50,7 +64,7 @@ function Missions({ of, selection }: { of: ReportDocument; selection: Selection 
   );
 }
 
-function Curves({ of, selection }: { of: ReportDocument; selection: Selection }) {
+function Curves({ of, selection }: PartProps) {
   const strips = withSoftware(of.missions);
   return (
     <div class="grid">
@@ -73,7 +87,7 @@ export function gridTitles({ quality, missions }: Pick<ReportDocument, "quality"
   return titles.map((title, i) => (titles.indexOf(title) === i ? title : `${title} of ${missions[quality[i]?.missions[0] ?? -1]?.title ?? "other missions"}`));
 }
 
-function Quality({ of, selection }: { of: ReportDocument; selection: Selection }) {
+function Quality({ of, selection }: PartProps) {
   const titles = gridTitles(of);
   return (
     <>
@@ -86,8 +100,8 @@ function Quality({ of, selection }: { of: ReportDocument; selection: Selection }
 function partsOf(of: ReportDocument, selection: Selection): Part[] {
   const packs = of.trends != null || (of.answer?.packs.length ?? 0) > 0;
   const parts: (Part | false)[] = [
-    of.answer != null && { id: "answer", name: "Answer", title: "", show: () => of.answer && <Answer answer={of.answer} /> },
-    (of.missions.length > 0 || of.panel != null) && { id: "missions", name: of.missions.length > 0 ? "Missions" : "Aircraft", title: of.answer && of.missions.length > 0 ? of.headline : "", show: () => <Missions of={of} selection={selection} /> },
+    of.answer != null && { id: "answer", name: "Answer", title: "", show: () => <AnswerPart of={of} selection={selection} /> },
+    (of.answer ? of.missions.length > 1 : of.missions.length > 0 || of.panel != null) && { id: "missions", name: of.missions.length > 0 ? "Missions" : "Aircraft", title: of.answer ? of.headline : "", show: () => <Missions of={of} selection={selection} /> },
     of.packs.length > 0 && { id: "several-packs", name: "Several packs", show: () => of.packs.map((mission) => <SeveralPacks mission={mission} />) },
     of.missions.length > 1 && { id: "curves", name: "Curves", title: "All missions", show: () => <Curves of={of} selection={selection} /> },
     of.quality.length > 0 && { id: "quality", name: "Quality of service", show: () => <Quality of={of} selection={selection} /> },

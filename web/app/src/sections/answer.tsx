@@ -1,4 +1,5 @@
 // The answer of `flightwatt LOG...`: how long and how far a full pack lasts, what that rests on, and the failsafe.
+import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 import type { AnswerDocument, Answered, BestSpeed, FailsafeCard } from "../documents";
 import { Card, CopyButton, Facts, Figure } from "../ui/basics";
@@ -57,7 +58,7 @@ function Lines({ answer }: { answer: AnswerDocument }) {
         {answer.lines.map(({ label, value, basis }) => (
           <div>
             <dt>{label}</dt>
-            <dd><b>{value}</b>{basis && <span>{value && " "}{basis}</span>}</dd>
+            <dd><b>{value}</b>{basis && <span>{basis}</span>}</dd>
           </div>
         ))}
       </dl>
@@ -127,14 +128,16 @@ export function Failsafe({ answer }: { answer: AnswerDocument }) {
             ["comes too late in", late(card.critical)],
             ["Way home", card.home_distance_m != null && `${distance(card.home_distance_m)}${card.home_duration_s == null ? "" : `, ${duration(card.home_duration_s)}`}`],
           ]} />
-          <ul class="rests">
-            {card.rests_on.map(({ ground, text }) => <li><span class={`basis ${ground}`} /> <b>{capital(ground)}</b> {text}</li>)}
-          </ul>
         </>
       ) : (
         failsafe_missing && <p>{failsafe_missing}</p>
       )}
       <Pastes pastes={pastes} />
+      {card && card.rests_on.length > 0 && (
+        <Opened title="What these values rest on">
+          {() => <ul class="rests">{card.rests_on.map(({ ground, text }) => <li><span class={`basis ${ground}`} /> <b>{capital(ground)}</b> {text}</li>)}</ul>}
+        </Opened>
+      )}
     </Card>
   );
 }
@@ -152,17 +155,30 @@ function Speeds({ speeds }: { speeds: BestSpeed[] }) {
   );
 }
 
-export function Answer({ answer }: { answer: AnswerDocument }) {
+interface AnswerProps {
+  answer: AnswerDocument;
+  /// The flight whose charge is shown below the figures.
+  curve: ComponentChildren;
+  panel: ComponentChildren;
+}
+
+export function Answer({ answer, curve, panel }: AnswerProps) {
   return (
-    <div class="grid answer" id="answer">
-      <div class="three-quarters">
-        {answer.no_answer ? <section class="card" aria-label="No answer"><p>{answer.no_answer}</p></section> : <Figures answer={answer} />}
-        <Lines answer={answer} />
+    <>
+      <div class="grid">
+        <div class="three-quarters">
+          {answer.no_answer ? <section class="card" aria-label="No answer"><p>{answer.no_answer}</p></section> : <Figures answer={answer} />}
+          {curve}
+        </div>
+        <div class="quarter"><Failsafe answer={answer} /></div>
       </div>
-      <div class="quarter">
-        <Failsafe answer={answer} />
-        <Speeds speeds={answer.best_speeds} />
+      <div class="grid next-row">
+        <div class={panel ? "three-quarters" : ""}>
+          <Lines answer={answer} />
+          <Speeds speeds={answer.best_speeds} />
+        </div>
+        {panel && <div class="quarter">{panel}</div>}
       </div>
-    </div>
+    </>
   );
 }

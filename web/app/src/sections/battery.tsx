@@ -12,7 +12,7 @@ function OpenCircuit({ curve }: { curve: NonNullable<BatteryDocument["open_circu
   const of = (flown: boolean) => voltage_v.map((value, i) => (from_flights[i] === flown || (!flown && from_flights[i - 1] !== from_flights[i + 1]) ? value : null));
   return (
     <div>
-      <h4>Open-circuit voltage</h4>
+      <h3>Open-circuit voltage</h3>
       <Chart height={250} x={{ title: "State of charge [%]", range: [0, 100] }} y={{ title: "Voltage [V]", range: rangeOf([voltage_v, low_v, high_v]) }}
         description={`Open-circuit voltage over the state of charge: ${quantity(voltage_v[0], 2, "V")} at ${quantity(soc_percent[0], 0, "%")} to ${quantity(voltage_v[voltage_v.length - 1], 2, "V")} at ${quantity(soc_percent[soc_percent.length - 1], 0, "%")}.`}>
         {(place) => (
@@ -36,7 +36,7 @@ function Voltages({ voltages }: { voltages: BatteryDocument["voltages"] }) {
   const minutes = one.time_s.map((time) => time / 60);
   return (
     <div>
-      <h4>Voltage under load</h4>
+      <h3>Voltage under load</h3>
       <label class="choose"><span>Flight</span>
         <select value={chosen} onChange={(event) => setChosen(Number(event.currentTarget.value))}>
           {voltages.map(({ flight }, i) => <option value={i}>{flight}</option>)}
@@ -90,7 +90,7 @@ export function BatteryPart({ battery }: { battery: BatteryDocument }) {
       </div>
       {rows.length > 0 && (
         <>
-          <h4>{plural(rows.length, "flight")}</h4>
+          <h3>{plural(rows.length, "flight")}</h3>
           <Table caption="The battery in each flight" columns={known} rows={rows} words={rows.length > 8 ? ({ flight }) => flight : undefined} />
           <p class="soft">Missing: charge below full at the start of the flight, with its 95 % interval. By the other flights: RMS error of this flight's voltage by the battery of the others; beyond the others: fraction of its samples with more charge drawn than in any other flight.</p>
         </>

@@ -18,7 +18,7 @@ export function ModelPart({ model }: { model: ModelDocument }) {
       <div class="phase-charts">
         {curves.map(({ phase, time_s, power_w, band, flights }) => (
           <div>
-            <h4>{capital(phase_words[phase])}</h4>
+            <h3>{capital(phase_words[phase])}</h3>
             <Chart height={210} x={{ title: "seconds of the phase", range: [0, Math.max(time_s[time_s.length - 1] ?? 1, 1e-3)] }} y={{ title: "Power [W]", range }}
               description={`Power of ${phase_words[phase]} by the model over its time${band ? ", with the 95 % band of the mean" : ""}${flights ? " and the range of the flights" : ""}.`}>
               {(place) => (
@@ -33,7 +33,7 @@ export function ModelPart({ model }: { model: ModelDocument }) {
         ))}
       </div>
       <p class="soft">Power over the time of each phase, with the 95 % band of the mean and the range of the flights where they are known.</p>
-      {model.table_one && <><h4>Table I</h4><Printed table={model.table_one} /><p class="soft">{model.table_text}</p></>}
+      {model.table_one && <><h3>Table I</h3><Printed table={model.table_one} /><p class="soft">{model.table_text}</p></>}
     </>
   );
 }

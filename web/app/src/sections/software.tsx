@@ -49,13 +49,13 @@ function Component({ component, missions }: { component: SoftwareProfile["compon
   if (!parameter || new Set(values).size < 2)
     return (
       <section class="card" aria-label={`Power of ${name}`}>
-        <h4>{capital(name)}</h4>
+        <h3>{capital(name)}</h3>
         {lines.map((line) => <p>{line.name && `${line.name}: `}<b>{power(line.power_w[0])}</b>{line.low_w[0] != null && ` (${power(line.low_w[0])} to ${power(line.high_w[0])})`}</p>)}
       </section>
     );
   return (
     <section class="card" aria-label={`Power of ${name}`}>
-      <header class="card-head"><h4>{capital(name)}</h4><span class="aside">{plural(missions.length, "mission")}</span></header>
+      <header class="card-head"><h3>{capital(name)}</h3><span class="aside">{plural(missions.length, "mission")}</span></header>
       <Chart height={210} aside={lines.some((line) => line.name) ? 130 : 16} x={{ title: parameter.replaceAll("_", " "), range: rangeOf([values]) }}
         y={{ title: "Power [W]", range: rangeOf([...lines.map(({ power_w }) => power_w), ...lines.map(({ high_w }) => high_w)], 0) }} description={`Power of ${name} over ${parameter.replaceAll("_", " ")}: ${lines.map((line) => `${line.name} ${line.value.map((value, i) => `${value}: ${power(line.power_w[i])}`).join(", ")}`).join("; ")}.`}>
         {(place) => lines.map((line, k) => (

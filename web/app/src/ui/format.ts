@@ -13,10 +13,10 @@ export function quantity(value: number | null | undefined, decimals: number, uni
   return text === "unknown" ? text : `${text} ${unit}`;
 }
 
-/// Returns "21 min 29 s", from an hour on "1 h 12 min"; down to whole seconds.
+/// Returns "21 min 29 s", from an hour on "1 h 12 min"; to the nearest second.
 export function duration(seconds: number | null | undefined): string {
   if (seconds == null || !Number.isFinite(seconds)) return "unknown";
-  const whole = Math.floor(Math.abs(seconds) + 1e-6);
+  const whole = Math.round(Math.abs(seconds));
   const sign = seconds < 0 && whole > 0 ? "−" : "";
   if (whole >= 3600) return `${sign}${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
   if (whole >= 60) return `${sign}${Math.floor(whole / 60)} min ${whole % 60} s`;

@@ -70,14 +70,14 @@ export function TrackMap(props: MapProps) {
     }
     for (const spot of props.spots ?? []) {
       L.circleMarker(spot.place, { radius: 6, color: colour("card"), weight: 2, fillColor: colour(spot.colour), fillOpacity: 1 })
-        .bindTooltip(spot.name, { permanent: spot.is_named, direction: "right", className: spot.is_named ? "map-name" : "" })
+        .bindTooltip(spot.name, { permanent: spot.is_named, direction: "auto", className: spot.is_named ? "map-name" : "" })
         .addTo(layer);
     }
     const all = [...props.tracks.flatMap((track) => track.places), ...(props.spots ?? []).map((spot) => spot.place)];
     const is_set = (map as unknown as { _loaded?: boolean })._loaded;
     if (props.still && is_set) return;
     if (all.length === 0) map.setView(props.view ?? [0, 0], props.view ? 15 : 2);
-    else map.fitBounds(L.latLngBounds(all).pad(0.08), { animate: false });
+    else map.fitBounds(L.latLngBounds(all).pad(0.1), { animate: false });
   }, [props.tracks, props.spots, props.view]);
   useEffect(() => {
     if (!drawn.current) return;

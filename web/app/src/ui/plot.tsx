@@ -73,6 +73,7 @@ function options(props: PlotProps, width: number): uPlot.Options {
   return {
     width,
     height: props.height ?? 220,
+    padding: [8, 16, props.x_axis === false ? 2 : 0, 0],
     scales: { x: { time: false, ...(x_range && { range: (_, min, max) => (min === first && max === last ? x_range : [min, max]) }) }, y: props.y_range ? { range: props.y_range } : {} },
     axes: [
       props.x_axis === false ? { ...axis, size: 0, values: () => [] } :
