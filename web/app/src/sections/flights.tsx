@@ -2,7 +2,7 @@
 import { useMemo } from "preact/hooks";
 import type { Exclusion, FlightRow, SortieRow } from "../documents";
 import { Verdict, type Grade } from "../ui/basics";
-import { distance, duration, energy, number, power, quantity } from "../ui/format";
+import { distance, duration, energy, naturally, number, power, quantity } from "../ui/format";
 import { Opened } from "../ui/opened";
 import { Table, type Column } from "../ui/table";
 import { FlightCard } from "./flight";
@@ -16,14 +16,16 @@ export interface Row {
   sortie: SortieRow | null;
 }
 
+/// The rows in the order of their names, "flight 10" after "flight 9".
 export function rowsOf(flights: FlightRow[]): Row[] {
-  return flights.flatMap((log, index): Row[] => (log.sorties.length > 0 ? log.sorties.map((sortie) => ({ index, log, sortie })) : [{ index, log, sortie: null }]));
+  const rows = flights.flatMap((log, index): Row[] => (log.sorties.length > 0 ? log.sorties.map((sortie) => ({ index, log, sortie })) : [{ index, log, sortie: null }]));
+  return rows.sort((a, b) => naturally(a.log.name, b.log.name));
 }
 
 const used_words: Record<FlightRow["used"], { grade: Grade; words: string }> = {
-  all: { grade: "good", words: "Used" },
+  all: { grade: "good", words: "Yes" },
   "in part": { grade: "doubt", words: "In part" },
-  no: { grade: "none", words: "Not used" },
+  no: { grade: "none", words: "No" },
 };
 const nameOf = ({ log, sortie }: Row) => (log.sorties.length > 1 && sortie ? `${log.name}, flight ${sortie.sortie}` : log.name);
 
@@ -37,7 +39,7 @@ function columnsOf(severalAircraft: boolean): Column<Row>[] {
     { head: "In the air", cell: ({ sortie }) => sortie && duration(sortie.in_air_s), by: ({ sortie }) => sortie?.in_air_s, numeric: true },
     { head: "Energy", cell: ({ sortie }) => sortie?.energy_wh != null && energy(sortie.energy_wh), by: ({ sortie }) => sortie?.energy_wh, numeric: true },
     { head: "Cruise", cell: ({ sortie }) => sortie?.mean_power_w.cruise != null && power(sortie.mean_power_w.cruise), by: ({ sortie }) => sortie?.mean_power_w.cruise, numeric: true },
-    { head: "For the model", cell: ({ log }) => <Verdict grade={used_words[log.used].grade}>{used_words[log.used].words}</Verdict>, by: ({ log }) => log.used },
+    { head: "Used", cell: ({ log }) => <Verdict grade={used_words[log.used].grade}>{used_words[log.used].words}</Verdict>, by: ({ log }) => log.used },
   ];
 }
 

@@ -40,7 +40,7 @@ export function MissionCard({ mission, index, count, heading = "h2" }: { mission
         <div class="mission-help">
           {(card.help || card.better) && (
             <p>
-              {card.help && <><b>{grade === "good" ? "To spare" : "What would help"}:</b> {card.help}. </>}
+              {card.help && (grade === "good" ? `${capital(card.help)}. ` : <><b>What would help:</b> {card.help}. </>)}
               {card.better && `${card.better}.`}
             </p>
           )}

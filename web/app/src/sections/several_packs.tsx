@@ -18,13 +18,13 @@ const columns: Column<PackFlight>[] = [
   { head: "In the air", cell: ({ duration_s }) => duration(duration_s), by: ({ duration_s }) => duration_s, numeric: true },
   { head: "Part of the cruise", cell: ({ cruise_from_s, cruise_to_s }) => `${duration(cruise_from_s)} to ${duration(cruise_to_s)}`, by: ({ cruise_from_s }) => cruise_from_s, numeric: true },
   { head: "At most until", cell: ({ largest_to_s }) => duration(largest_to_s), by: ({ largest_to_s }) => largest_to_s, numeric: true },
-  { head: "Returns from", cell: ({ return_from, return_east_m: east, return_north_m: north }) => <span>{return_from}{east != null && north != null && <span class="small-under">{distance(east)} east, {distance(north)} north of the start</span>}</span> },
+  { head: "Returns from", cell: ({ return_from, return_east_m: east, return_north_m: north }) => <span>{return_from}{east != null && north != null && <span class="small-under">{distance(Math.abs(east))} {east < 0 ? "west" : "east"}, {distance(Math.abs(north))} {north < 0 ? "south" : "north"} of the start</span>}</span> },
   { head: "Energy", cell: ({ energy_wh }) => energy(energy_wh), by: ({ energy_wh }) => energy_wh, numeric: true },
   {
     head: "Charge at landing", numeric: true, by: ({ final_soc_percent }) => final_soc_percent,
     cell: (flight) => <span><b>{quantity(flight.final_soc_percent, 1, "%")}</b><span class="small-under"><Verdict grade={verdictOf(flight).grade}>{verdictOf(flight).words}</Verdict></span></span>,
   },
-  { head: "Keeps the reserve", cell: ({ probability_below_reserve }) => kept(probability_below_reserve), by: ({ probability_below_reserve }) => probability_below_reserve, numeric: true },
+  { head: "Keeps the reserve", cell: ({ probability_below_reserve }) => kept(probability_below_reserve), by: ({ probability_below_reserve: below }) => below, numeric: true },
 ];
 
 export function SeveralPacks({ mission }: { mission: PackMission }) {
@@ -37,7 +37,7 @@ export function SeveralPacks({ mission }: { mission: PackMission }) {
         ["Energy", energy(mission.energy_wh)],
         ["All keep the reserve", mission.probability_below_reserve != null && kept(mission.probability_below_reserve)],
       ]} />
-      <Table caption={`Flights of ${mission.mission}`} columns={columns} rows={mission.flights} />
+      <Table caption={`Flights of ${mission.mission}`} columns={columns.filter(({ by }) => !by || mission.flights.some((flight) => by(flight) != null))} rows={mission.flights} />
     </Card>
   );
 }
