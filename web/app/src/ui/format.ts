@@ -13,10 +13,10 @@ export function quantity(value: number | null | undefined, decimals: number, uni
   return text === "unknown" ? text : `${text} ${unit}`;
 }
 
-/// Returns "21 min 29 s", from an hour on "1 h 12 min"; down to whole seconds.
+/// Returns "21 min 29 s", from an hour on "1 h 12 min"; to the nearest second.
 export function duration(seconds: number | null | undefined): string {
   if (seconds == null || !Number.isFinite(seconds)) return "unknown";
-  const whole = Math.floor(Math.abs(seconds) + 1e-6);
+  const whole = Math.round(Math.abs(seconds));
   const sign = seconds < 0 && whole > 0 ? "−" : "";
   if (whole >= 3600) return `${sign}${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
   if (whole >= 60) return `${sign}${Math.floor(whole / 60)} min ${whole % 60} s`;
@@ -49,3 +49,9 @@ export function date(iso: string | null | undefined): string {
 
 /// Compares two names so that "flight 10" follows "flight 9".
 export const naturally = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
+
+/// Returns "413 W", or below 100 W with one decimal "27.3 W".
+export const power = (watts: number | null | undefined) => quantity(watts, watts != null && Math.abs(watts) >= 99.95 ? 0 : 1, "W");
+
+/// Returns "5.02 Wh".
+export const energy = (watt_hours: number | null | undefined) => quantity(watt_hours, 2, "Wh");

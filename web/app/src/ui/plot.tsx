@@ -1,9 +1,10 @@
 // Plots over time or another axis, by uPlot: drag to zoom, double-click for all; plots of one group share their cursor.
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 
-type Values = (number | null)[];
+/// A missing value is a gap; undefined is only not at this place of the axis.
+type Values = (number | null | undefined)[];
 
 /// A line, or with `band` the area between two rows of values.
 export interface Line {
@@ -26,8 +27,18 @@ interface PlotProps {
   /// Plots with the same group share cursor and zoom.
   group?: string;
   y_range?: [number, number];
+  /// The whole of the x axis, where plots of a group have other ends.
+  x_range?: [number, number];
+  /// Where the cursor is moved to: a value of x.
+  at?: number | null;
   /// Vertical stripes, as phases of a flight: from, to, colour.
   stripes?: { from: number; to: number; colour: string }[];
+  /// Words at places of the plot.
+  labels?: { x: number; y: number; text: string; colour: string; align?: CanvasTextAlign }[];
+  /// Without, the values under the cursor are not listed below.
+  legend?: boolean;
+  /// Without, the axis has no numbers: that of the plot below has them.
+  x_axis?: boolean;
   /// What the plot shows, in words.
   description: string;
   onCursor?: (index: number | null) => void;
@@ -37,6 +48,8 @@ const colour = (name: string) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || name;
 
 function options(props: PlotProps, width: number): uPlot.Options {
+  const [first, last] = [props.x[0], props.x[props.x.length - 1]];
+  const x_range = props.x_range;
   const axis = { stroke: colour("ink2"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
   const series: uPlot.Series[] = [{ label: props.x_title }];
   const bands: uPlot.Band[] = [];
@@ -60,14 +73,16 @@ function options(props: PlotProps, width: number): uPlot.Options {
   return {
     width,
     height: props.height ?? 220,
-    scales: { x: { time: false }, y: props.y_range ? { range: props.y_range } : {} },
+    padding: [8, 16, props.x_axis === false ? 2 : 0, 0],
+    scales: { x: { time: false, ...(x_range && { range: (_, min, max) => (min === first && max === last ? x_range : [min, max]) }) }, y: props.y_range ? { range: props.y_range } : {} },
     axes: [
+      props.x_axis === false ? { ...axis, size: 0, values: () => [] } :
       { ...axis, label: props.x_title, labelSize: 20, size: 32, font: "12px system-ui", labelFont: "12px system-ui" },
-      { ...axis, label: props.y_title, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
+      { ...axis, label: props.y_title || undefined, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
     ],
     series,
     bands,
-    legend: { show: true, live: true },
+    legend: { show: props.legend ?? true, live: true },
     cursor: props.group ? { sync: { key: props.group, scales: ["x", null] } } : {},
     hooks: {
       drawClear: [
@@ -79,6 +94,21 @@ function options(props: PlotProps, width: number): uPlot.Options {
           }
         },
       ],
+      draw: [
+        (plot) => {
+          const { ctx } = plot;
+          ctx.font = `600 ${12 * devicePixelRatio}px system-ui, sans-serif`;
+          for (const { x, y, text, colour: name, align = "left" } of props.labels ?? []) {
+            ctx.textAlign = align;
+            ctx.lineWidth = 4 * devicePixelRatio;
+            ctx.strokeStyle = colour("card");
+            ctx.fillStyle = colour(name);
+            const [left, top] = [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
+            ctx.strokeText(text, left, top);
+            ctx.fillText(text, left, top);
+          }
+        },
+      ],
       setCursor: props.onCursor ? [(plot) => props.onCursor?.(plot.cursor.idx ?? null)] : [],
     },
   };
@@ -86,7 +116,9 @@ function options(props: PlotProps, width: number): uPlot.Options {
 
 export function Plot(props: PlotProps) {
   const place = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  const shown = useRef<uPlot | null>(null);
+  // At once, so that what opens for paper is drawn on it.
+  useLayoutEffect(() => {
     const element = place.current;
     if (!element) return;
     const data = [props.x, ...props.lines.flatMap((line) => (line.band ? [line.band, line.y] : [line.y]))];
@@ -94,21 +126,25 @@ export function Plot(props: PlotProps) {
     const draw = () => {
       plot?.destroy();
       plot = new uPlot(options(props, element.clientWidth), data as uPlot.AlignedData, element);
+      shown.current = plot;
     };
     draw();
     const resized = new ResizeObserver(() => {
       if (plot && plot.width !== element.clientWidth) plot.setSize({ width: element.clientWidth, height: plot.height });
     });
     resized.observe(element);
-    const theme = matchMedia("(prefers-color-scheme: dark)");
-    theme.addEventListener("change", draw);
+    const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
+    for (const query of media) query.addEventListener("change", draw);
     document.addEventListener("themechange", draw);
     return () => {
       resized.disconnect();
-      theme.removeEventListener("change", draw);
+      for (const query of media) query.removeEventListener("change", draw);
       document.removeEventListener("themechange", draw);
       plot?.destroy();
     };
   }, [props.x, props.lines, props.stripes, props.height]);
+  useEffect(() => {
+    if (props.at != null && shown.current) shown.current.setCursor({ left: shown.current.valToPos(props.at, "x"), top: 1 });
+  }, [props.at]);
   return <div class="plot" role="img" aria-label={props.description} ref={place} />;
 }
