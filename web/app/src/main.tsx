@@ -2,11 +2,21 @@
 import { render } from "preact";
 import "./app.css";
 import { carriedDocument } from "./documents";
+import { hasEngine, openEngine } from "./engine/open";
+import { EngineApp } from "./screens/engine_app";
 import { Shell } from "./ui/shell";
+import { Project } from "./work/project";
 
 const place = document.getElementById("app");
 const carried = carriedDocument();
-if (place) {
+if (place && !carried && hasEngine()) {
+  void openEngine().then((engine) => {
+    const project = new Project(engine);
+    place.replaceChildren();
+    render(<EngineApp project={project} />, place);
+    void project.start();
+  });
+} else if (place) {
   place.replaceChildren();
   render(<Shell screens={[{ id: "report", name: "Report", show: () => <h1>{carried?.title ?? "FlightWatt"}</h1> }]} />, place);
 }

@@ -1,6 +1,7 @@
 // The small parts of all screens: cards, verdicts, facts, the command that gives the same.
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import { Icon } from "./icons";
 
 type Children = { children?: ComponentChildren };
 
@@ -89,7 +90,7 @@ export function Folded(props: Children & { title: string; id?: string }) {
 }
 
 /// A button that copies a text and says that it did.
-export function CopyButton({ text, label = "Copy" }: { text: string; label?: string }) {
+export function CopyButton({ text, label = "Copy", primary }: { text: string; label?: string; primary?: boolean }) {
   const [copied, setCopied] = useState(false);
   const copy = async () => {
     try {
@@ -106,8 +107,8 @@ export function CopyButton({ text, label = "Copy" }: { text: string; label?: str
     setTimeout(() => setCopied(false), 2000);
   };
   return (
-    <button type="button" class="quiet" onClick={copy}>
-      <span aria-live="polite">{copied ? "Copied" : label}</span>
+    <button type="button" class={primary ? "primary" : "quiet"} onClick={copy}>
+      <Icon name="copy" /> <span aria-live="polite">{copied ? "Copied" : label}</span>
     </button>
   );
 }

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import L from "leaflet";
 import "leaflet/dist/leaflet.css";
 
-type Place = [latitude_deg: number, longitude_deg: number];
+export type Place = [latitude_deg: number, longitude_deg: number];
 
 export interface Track {
   name: string;
@@ -12,6 +12,7 @@ export interface Track {
   places: Place[];
   dashed?: boolean;
   closed?: boolean;
+  weight?: number;
 }
 
 export interface Spot {
@@ -26,6 +27,10 @@ interface MapProps {
   /// Where the cursor of a plot is.
   cursor?: Place | null;
   height?: number;
+  /// Where the map is while nothing is drawn on it.
+  view?: Place;
+  /// Stays where it is as the drawing changes.
+  still?: boolean;
   description: string;
   onClick?: (place: Place) => void;
 }
@@ -56,7 +61,7 @@ export function TrackMap(props: MapProps) {
     const { map, layer } = drawn.current;
     layer.clearLayers();
     for (const track of props.tracks) {
-      const style = { color: colour(track.colour), weight: 2.5, dashArray: track.dashed ? "6 5" : undefined };
+      const style = { color: colour(track.colour), weight: track.weight ?? 2.5, dashArray: track.dashed ? "6 5" : undefined };
       (track.closed ? L.polygon(track.places, { ...style, fillOpacity: 0.08 }) : L.polyline(track.places, style))
         .bindTooltip(track.name, { sticky: true })
         .addTo(layer);
@@ -67,8 +72,11 @@ export function TrackMap(props: MapProps) {
         .addTo(layer);
     }
     const all = [...props.tracks.flatMap((track) => track.places), ...(props.spots ?? []).map((spot) => spot.place)];
-    if (all.length > 0) map.fitBounds(L.latLngBounds(all).pad(0.08), { animate: false });
-  }, [props.tracks, props.spots]);
+    const is_set = (map as unknown as { _loaded?: boolean })._loaded;
+    if (props.still && is_set) return;
+    if (all.length === 0) map.setView(props.view ?? [0, 0], props.view ? 15 : 2);
+    else map.fitBounds(L.latLngBounds(all).pad(0.08), { animate: false });
+  }, [props.tracks, props.spots, props.view]);
   useEffect(() => {
     if (!drawn.current) return;
     const { map, cursor } = drawn.current;
@@ -83,5 +91,5 @@ export function TrackMap(props: MapProps) {
       map?.off("click", click);
     };
   }, [props.onClick]);
-  return <div class="map" role="img" aria-label={props.description} style={{ height: `${props.height ?? 320}px` }} ref={place} />;
+  return <div class="map" role="group" aria-label={props.description} style={{ height: `${props.height ?? 320}px` }} ref={place} />;
 }

@@ -3,7 +3,8 @@ import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 
-type Values = (number | null)[];
+/// A missing value is a gap; undefined is only not at this place of the axis.
+type Values = (number | null | undefined)[];
 
 /// A line, or with `band` the area between two rows of values.
 export interface Line {
@@ -28,6 +29,12 @@ interface PlotProps {
   y_range?: [number, number];
   /// Vertical stripes, as phases of a flight: from, to, colour.
   stripes?: { from: number; to: number; colour: string }[];
+  /// Words at places of the plot.
+  labels?: { x: number; y: number; text: string; colour: string; align?: CanvasTextAlign }[];
+  /// Without, the values under the cursor are not listed below.
+  legend?: boolean;
+  /// Without, the axis has no numbers: that of the plot below has them.
+  x_axis?: boolean;
   /// What the plot shows, in words.
   description: string;
   onCursor?: (index: number | null) => void;
@@ -62,12 +69,13 @@ function options(props: PlotProps, width: number): uPlot.Options {
     height: props.height ?? 220,
     scales: { x: { time: false }, y: props.y_range ? { range: props.y_range } : {} },
     axes: [
+      props.x_axis === false ? { ...axis, size: 0, values: () => [] } :
       { ...axis, label: props.x_title, labelSize: 20, size: 32, font: "12px system-ui", labelFont: "12px system-ui" },
       { ...axis, label: props.y_title, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
     ],
     series,
     bands,
-    legend: { show: true, live: true },
+    legend: { show: props.legend ?? true, live: true },
     cursor: props.group ? { sync: { key: props.group, scales: ["x", null] } } : {},
     hooks: {
       drawClear: [
@@ -76,6 +84,21 @@ function options(props: PlotProps, width: number): uPlot.Options {
             const left = plot.valToPos(stripe.from, "x", true);
             plot.ctx.fillStyle = `${colour(stripe.colour)}1f`;
             plot.ctx.fillRect(left, plot.bbox.top, plot.valToPos(stripe.to, "x", true) - left, plot.bbox.height);
+          }
+        },
+      ],
+      draw: [
+        (plot) => {
+          const { ctx } = plot;
+          ctx.font = `600 ${12 * devicePixelRatio}px system-ui, sans-serif`;
+          for (const { x, y, text, colour: name, align = "left" } of props.labels ?? []) {
+            ctx.textAlign = align;
+            ctx.lineWidth = 4 * devicePixelRatio;
+            ctx.strokeStyle = colour("card");
+            ctx.fillStyle = colour(name);
+            const [left, top] = [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
+            ctx.strokeText(text, left, top);
+            ctx.fillText(text, left, top);
           }
         },
       ],

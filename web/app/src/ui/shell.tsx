@@ -1,16 +1,18 @@
 // The frame of all screens: name, tabs, theme; at the foot the facts of the document.
 import type { ComponentChildren } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { Icon } from "./icons";
 
 export interface Screen {
   id: string;
   name: string;
+  icon?: ComponentChildren;
   show: () => ComponentChildren;
 }
 
 /// Returns the screen that the address names, or the first.
-function chosen(screens: Screen[]): Screen | undefined {
-  return screens.find((screen) => `#${screen.id}` === location.hash) ?? screens[0];
+function chosen(screens: Screen[], hash: string): Screen | undefined {
+  return screens.find((screen) => `#${screen.id}` === hash) ?? screens[0];
 }
 
 function nextTheme() {
@@ -22,34 +24,36 @@ function nextTheme() {
 
 /// Shows the screen that the address names; `aside` stands at the right of the tabs.
 export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foot?: ComponentChildren }) {
-  const [screen, setScreen] = useState(() => chosen(props.screens));
+  const [hash, setHash] = useState(location.hash);
   useEffect(() => {
     const follow = () => {
-      setScreen(chosen(props.screens));
+      setHash(location.hash);
       scrollTo(0, 0);
     };
-    follow();
     addEventListener("hashchange", follow);
     return () => removeEventListener("hashchange", follow);
-  }, [props.screens]);
+  }, []);
+  const screen = chosen(props.screens, hash);
   return (
     <>
       <a class="skip" href="#main" onClick={(event) => (event.preventDefault(), document.querySelector<HTMLElement>("main")?.focus())}>
         To the content
       </a>
       <header class="bar">
-        <p class="brand">FlightWatt</p>
+        <p class="brand">
+          <Icon name="brand" /> FlightWatt
+        </p>
         <nav aria-label="Screens">
           {props.screens.map((one) => (
             <a href={`#${one.id}`} aria-current={one.id === screen?.id ? "page" : undefined}>
-              {one.name}
+              {one.icon} {one.name}
             </a>
           ))}
         </nav>
         <div class="bar-aside">
           {props.aside}
-          <button type="button" class="quiet" onClick={nextTheme}>
-            Light or dark
+          <button type="button" class="quiet" aria-label="Light or dark" title="Light or dark" onClick={nextTheme}>
+            <Icon name="theme" />
           </button>
         </div>
       </header>
