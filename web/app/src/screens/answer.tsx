@@ -1,12 +1,12 @@
 // How long and how far, with sliders for what is asked; all numbers are of `flightwatt answer` and `simulate`.
-import { useMemo } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { Card, Command, Figure, Mark, Verdict, type Grade } from "../ui/basics";
 import { distance, duration, number, quantity } from "../ui/format";
 import { Plot, type Line } from "../ui/plot";
 import type { Answer, Known } from "../work/documents";
-import { isMeasured, type Aircraft, type Answered, type Curve, type Project } from "../work/project";
-import { logsShown, optionsOf, quoted } from "../work/question";
+import { type Aircraft, type Answered, type Curve, type Project } from "../work/project";
+import { asWords, inPageWords, logsShown, optionsOf, quoted } from "../work/question";
 import { FailsafeCard } from "./failsafe";
 import { WhatIf } from "./what_if";
 
@@ -48,14 +48,14 @@ function Figures({ now, measured, asking }: { now: Answered; measured?: Answered
       <Figure label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`} value={duration(time.value)}>
         {is_chance && <Dots known={19} />}
         <p class="figure-note">
-          {is_chance ? <b class="ok">in 95 of 100 flights</b> : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : time.unknown}
+          {is_chance ? <b class="ok">in 95 of 100 flights</b> : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
           <Change text={changeOf(time.value, before && mainTime(before).value, duration)} />
         </p>
         {is_chance && <p class="soft">half of the flights: {duration(answer.time_in_air_s.value)}</p>}
       </Figure>
       <Figure label={speed != null && !answer.is_hover ? `Along the track, at ${quantity(speed, 1, "m/s")}` : "Along the track"} value={distance(answer.distance_m.value)}>
         <p class="figure-note">
-          {answer.distance_m.value != null ? "half of the flights, out and back" : answer.distance_m.unknown}
+          {answer.distance_m.value != null ? <><b>half of the flights</b>, out and back</> : inPageWords(answer.distance_m.unknown)}
           <Change text={changeOf(answer.distance_m.value, before?.distance_m.value, distance)} />
         </p>
         {answer.distance_across_m != null && <p class="soft">across the wind: {distance(answer.distance_across_m)}</p>}
@@ -96,13 +96,13 @@ export function ChargePlot({ curve, old, name }: { curve: Curve; old: Curve | nu
   const { reserve_soc_percent: reserve, final_soc_percent: final, duration_s } = curve.simulation;
   const labels = useMemo(
     () => [
-      { x: 0.1, y: reserve + 2, text: `reserve ${number(reserve, 0)} %`, colour: "alarm" },
-      { x: (curve.time_s[curve.time_s.length - 1] ?? 0) / 60, y: Math.min(final + 8, 92), text: `${number(final, 0)} % after ${duration(duration_s)}`, colour: "ink", align: "right" as const },
+      { x: 0.1, y: reserve + 1, text: `reserve ${number(reserve, 0)} %`, colour: "alarm" },
+      { x: (curve.time_s[curve.time_s.length - 1] ?? 0) / 60, y: final > 45 ? final - 14 : final + 34, text: `${number(final, 0)} % after ${duration(duration_s)}`, colour: "ink", align: "right" as const },
     ],
     [curve],
   );
   return (
-    <Plot x={x} lines={lines} stripes={stripes} labels={labels} legend={false} x_title="Time [min]" y_title="Charge [%]" y_range={[0, 100]} height={250}
+    <Plot x={x} lines={lines} stripes={stripes} strip labels={labels} legend={false} x_title="Time [min]" y_title="Charge [%]" y_range={[0, 100]} height={250}
       description={`${name}: charge over time, landing with ${number(final, 0)} % after ${duration(duration_s)}; reserve ${number(reserve, 0)} %.`} />
   );
 }
@@ -114,7 +114,7 @@ function ChargeCard({ now, measured }: { now: Answered; measured?: Answered }) {
   const old = measured && measured !== now ? measured.curve : null;
   return (
     <Card title="Charge over the flight" aside={aside}>
-      {curve ? <ChargePlot curve={curve} old={old} name="The longest flight" /> : <p>Unknown: {answer.time_in_air_s.unknown}</p>}
+      {curve ? <ChargePlot curve={curve} old={old} name="The longest flight" /> : <p>Unknown: {inPageWords(answer.time_in_air_s.unknown)}</p>}
       {curve && (
         <p class="plot-key">
           {curve.phases.map((phase) => (
@@ -160,7 +160,7 @@ function RestsOn({ answer }: { answer: Answer }) {
               <b>
                 {name} {known.value != null ? shown[name]?.(known.value) : "unknown"}
               </b>{" "}
-              {known.value != null ? known.basis : known.unknown}
+              {known.value != null ? known.basis : inPageWords(known.unknown)}
             </span>
           </li>
         ))}
@@ -175,8 +175,43 @@ function RestsOn({ answer }: { answer: Answer }) {
   );
 }
 
-function PredictedCard({ answer }: { answer: Answer }) {
-  const error = answer.prediction_error_percent;
+interface LeftOut {
+  flight: string;
+  used_wh: number | null;
+  predicted_wh: number | null;
+  off_percent: number | null;
+}
+
+/// Reads the table of validate, whose columns are set apart by two spaces or more.
+function leftOut(table: string, model: string): LeftOut[] {
+  const rows = table.split("\n").map((line) => line.trim().split(/ {2,}/));
+  const value = (cell: string | undefined) => (cell && Number.isFinite(Number(cell)) ? Number(cell) : null);
+  return rows
+    .filter((row) => row[1] === "total" && row[2] === model)
+    .map((row) => ({ flight: row[0] ?? "", used_wh: value(row[3]), predicted_wh: value(row[5]), off_percent: value(row[7]) }));
+}
+
+/// How each flight is predicted by the others, of `flightwatt validate`.
+function useLeftOut(project: Project, aircraft: Aircraft, model: string | undefined): LeftOut[] {
+  const [rows, setRows] = useState<LeftOut[]>([]);
+  useEffect(() => {
+    if (!model) return;
+    let is_wanted = true;
+    void project.run(["validate", aircraft.folder, "--quiet", "-o", "validate.txt"], false).then(async () => {
+      if (is_wanted) setRows(leftOut(await project.text("validate.txt"), model));
+    }).catch(() => undefined);
+    return () => {
+      is_wanted = false;
+    };
+  }, [aircraft.folder, model]);
+  return rows;
+}
+
+const signed = (value: number | null) => (value != null && value > 0 ? `+${quantity(value, 1, "%")}` : quantity(value, 1, "%"));
+
+function PredictedCard({ project, aircraft, answered }: { project: Project; aircraft: Aircraft; answered: Answered }) {
+  const error = answered.answer.prediction_error_percent;
+  const rows = useLeftOut(project, aircraft, aircraft.measured?.curve?.simulation.power_model?.model);
   return (
     <Card title="How well are new flights predicted?">
       {error.value != null ? (
@@ -186,6 +221,24 @@ function PredictedCard({ answer }: { answer: Answer }) {
       ) : (
         <p>Unknown: {error.unknown}</p>
       )}
+      {rows.length > 1 && (
+        <table class="left-out">
+          <thead>
+            <tr><th scope="col">Flight</th><th scope="col">Used</th><th scope="col">Predicted</th><th scope="col">Off</th></tr>
+          </thead>
+          <tbody>
+            {rows.slice(0, 6).map((row) => (
+              <tr>
+                <th scope="row"><bdi>{row.flight}</bdi></th>
+                <td>{quantity(row.used_wh, 1, "Wh")}</td>
+                <td>{quantity(row.predicted_wh, 1, "Wh")}</td>
+                <td>{signed(row.off_percent)}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      )}
+      {rows.length > 6 && <p class="soft">and {rows.length - 6} more</p>}
     </Card>
   );
 }
@@ -210,11 +263,12 @@ function PackHealth({ answer }: { answer: Answer }) {
   );
 }
 
-function headline(answer: Answer, is_asked: boolean): string {
+function headline({ answer, question }: Answered): string {
   const time = mainTime(answer);
   if (time.value == null) return answer.power_w.value != null ? `It draws ${quantity(answer.power_w.value, answer.power_w.value < 100 ? 1 : 0, "W")}; how long is not known yet` : "How long it flies is not known yet";
-  const reach = answer.distance_m.value != null ? ` and reaches ${distance(answer.distance_m.value)}` : "";
-  return `${is_asked ? "So asked, a" : "A"} full pack lasts ${duration(time.value)}${reach}`;
+  const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : "";
+  const asked = asWords(question);
+  return `${asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A"} full pack lasts ${duration(time.value)}${chance}`;
 }
 
 /// What to do where the answer lacks its capacity.
@@ -231,7 +285,7 @@ function CapacityAsked({ aircraft, project }: { aircraft: Aircraft; project: Pro
       <label for="asked-capacity">What capacity is on the pack’s label?</label>
       <input id="asked-capacity" name="capacity" type="text" inputMode="decimal" size={5} /> <span>Ah</span>
       <button type="submit" class="primary">Answer</button>
-      <p class="soft">{answer.capacity_ah.unknown}</p>
+      <p class="soft">{inPageWords(answer.capacity_ah.unknown)}</p>
     </form>
   );
 }
@@ -260,7 +314,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
             {answer.packs[0]?.cells ? ` · ${answer.packs[0].cells} cells` : ""}
             {answer.capacity_ah.value != null ? ` · ${quantity(answer.capacity_ah.value, 1, "Ah")}` : ""}
           </p>
-          <h1 aria-live="polite">{headline(answer, !isMeasured(now.question))}</h1>
+          <h1 aria-live="polite">{headline(now)}</h1>
         </div>
       </header>
       {aircraft.failed && <Card class="failed"><Verdict grade="bad">{aircraft.failed}</Verdict></Card>}
@@ -272,7 +326,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
           <ChargeCard now={now} measured={measured} />
           <div class="pair">
             <RestsOn answer={answer} />
-            <PredictedCard answer={answer} />
+            <PredictedCard project={project} aircraft={aircraft} answered={now} />
           </div>
         </div>
         <div class="answer-right">

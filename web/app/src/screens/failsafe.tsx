@@ -5,7 +5,7 @@ import { chance, number } from "../ui/format";
 import { Icon } from "../ui/icons";
 import type { Failsafe } from "../work/documents";
 import { errorsOf, type Aircraft, type Answered, type Project } from "../work/project";
-import { failsafeOptions } from "../work/question";
+import { failsafeOptions, inPageWords } from "../work/question";
 
 const autopilots = [
   { id: "ardupilot", name: "ArduPilot", ending: ".parm" },
@@ -52,27 +52,31 @@ function Budget({ card }: { card: Failsafe }) {
 
 function useExport(project: Project, aircraft: Aircraft, answered: Answered, autopilot: Autopilot) {
   const [text, setText] = useState<{ text: string; failed: string } | null>(null);
+  const [stale, setStale] = useState(true);
   useEffect(() => {
     let is_wanted = true;
+    setStale(true);
     const { folder } = aircraft;
-    const args = ["export", `${folder}/model.toml`, `${folder}/answer-pack.toml`, "--format", `failsafe-${autopilot.id}`, ...failsafeOptions(answered.question, answered.answer)];
+    const args = ["export", `${folder}/answer-mission.toml`, "--format", `failsafe-${autopilot.id}`, ...failsafeOptions(answered.question, answered.answer)];
     void project.runOnAnswer(aircraft.id, answered, args).then((result) => {
-      if (is_wanted) setText(result.code === 0 ? { text: result.out, failed: "" } : { text: "", failed: errorsOf(result) });
-    });
+      if (!is_wanted) return;
+      setStale(false);
+      setText(result.code === 0 ? { text: result.out, failed: "" } : { text: "", failed: errorsOf(result) });
+    }, () => undefined);
     return () => {
       is_wanted = false;
     };
   }, [answered, autopilot]);
-  return text;
+  return { text, stale };
 }
 
 function Parameters({ project, aircraft, answered, autopilot }: { project: Project; aircraft: Aircraft; answered: Answered; autopilot: Autopilot }) {
-  const written = useExport(project, aircraft, answered, autopilot);
+  const { text: written, stale } = useExport(project, aircraft, answered, autopilot);
   if (!written) return <p class="soft">Computing</p>;
   if (written.failed) return <p>{written.failed}</p>;
   return (
     <>
-      <dl class="facts parameters">
+      <dl class={`facts parameters${stale ? " old" : ""}`} aria-busy={stale}>
         {parametersOf(written.text).map(([name, value]) => (
           <div>
             <dt><code>{name}</code></dt>
@@ -107,7 +111,7 @@ export function FailsafeCard({ project, aircraft, answered }: { project: Project
           <input type="text" inputMode="decimal" size={6} value={home_m != null ? String(Math.round(home_m)) : ""} onChange={(event) => setHome(event.currentTarget.value)} /> m
         </span>
       </label>
-      {!card && <p>None: {failsafe_missing}</p>}
+      {!card && <p>None: {inPageWords(failsafe_missing)}</p>}
       {card && <Budget card={card} />}
       {card?.low_missing && <p class="small">{card.low_missing}</p>}
       {card && (

@@ -103,12 +103,14 @@ function usePlots(data: FlightData) {
     const latitude = track(data.series, "latitude_deg");
     const longitude = track(data.series, "longitude_deg");
     const places = latitude.x.map((time, i): [number, number] => [latitude.y[i] as number, longitude.y[before(longitude.x, time)] as number]);
-    return { plots, stripes, place_times: latitude.x.map(minutes), places: longitude.x.length > 0 ? places : [] };
+    const ends = plots.flatMap((plot) => [plot.x[0] as number, plot.x[plot.x.length - 1] as number]);
+    const x_range: [number, number] = [Math.min(...ends), Math.max(...ends)];
+    return { plots, stripes, x_range, place_times: latitude.x.map(minutes), places: longitude.x.length > 0 ? places : [] };
   }, [data]);
 }
 
 function FlightPlots({ data, row }: { data: FlightData; row: Row }) {
-  const { plots, stripes, place_times, places } = usePlots(data);
+  const { plots, stripes, x_range, place_times, places } = usePlots(data);
   const [at, setAt] = useState<number | null>(null);
   const first = plots[0];
   const onCursor = useCallback((index: number | null) => setAt(index == null ? null : (first?.x[index] ?? null)), [first]);
@@ -122,7 +124,7 @@ function FlightPlots({ data, row }: { data: FlightData; row: Row }) {
       <div class="flight-plots">
         {plots.map((plot, i) => (
           <div class="flight-plot">
-            <Plot x={plot.x} lines={plot.lines} stripes={stripes} group={`flight-${row.line.flight}`} legend={false} x_axis={i === plots.length - 1}
+            <Plot x={plot.x} lines={plot.lines} stripes={stripes} x_range={x_range} group={`flight-${row.line.flight}`} legend={false} x_axis={i === plots.length - 1}
               x_title="Time since lift-off [min]" y_title={plot.title} height={i === plots.length - 1 ? 140 : 100}
               description={`${plot.title} over the time of ${row.line.flight}`} onCursor={i === 0 ? onCursor : undefined} />
             <output class="at-cursor">{at != null ? quantity(plot.lines[0]?.y[before(plot.x, at)], plot.decimals, plot.unit) : ""}</output>

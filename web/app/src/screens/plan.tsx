@@ -87,7 +87,9 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
     setHelp([]);
     if (!answered || !flown || verdictOf(flown.curve).grade === "good" || /\.toml$/.test(flown.options.plan)) return;
     let is_wanted = true;
-    const tries: { words: string; change: Partial<PlanOptions> }[] = [{ words: `${flown.options.packs + 1} packs`, change: { packs: flown.options.packs + 1 } }];
+    const tries: { words: string; change: Partial<PlanOptions> }[] = [];
+    const { packs } = flown.options;
+    if (!flown.curve.simulation.keeps_reserve) tries.push({ words: `${packs + 1} packs`, change: { packs: packs + 1 } });
     if (flown.spacing != null) {
       const spacing = Math.round(flown.spacing * 1.5);
       tries.push({ words: `Spacing ${spacing} m instead of ${number(flown.spacing, 0)}`, change: { spacing } });
@@ -139,10 +141,10 @@ function useFlown(project: Project, aircraft: Aircraft | undefined, answered: An
 }
 
 function useShape(project: Project, plan: string): PlanShape {
-  const [shape, setShape] = useState<PlanShape>({ lines: [], areas: [] });
+  const [shape, setShape] = useState<PlanShape>({ lines: [], areas: [], named: [] });
   useEffect(() => {
-    if (plan) void project.text(plan).then((text) => setShape(shapeOf(plan, text)), () => setShape({ lines: [], areas: [] }));
-    else setShape({ lines: [], areas: [] });
+    if (plan) void project.text(plan).then((text) => setShape(shapeOf(plan, text)), () => setShape({ lines: [], areas: [], named: [] }));
+    else setShape({ lines: [], areas: [], named: [] });
   }, [plan]);
   return shape;
 }
@@ -179,7 +181,8 @@ function PlanMap({ shape, flown, drawing, onPlace }: MapProps) {
   const spots = useMemo((): Spot[] => {
     if (drawing) return drawing.map((place, i) => ({ name: `corner ${i + 1}`, colour: "link", place }));
     const first = shape.home ?? shape.lines[0]?.[0];
-    return first ? [{ name: "home", colour: "ink", place: first }] : [];
+    const named = shape.named.map(({ name, place }): Spot => ({ name, colour: "cruise", place }));
+    return first ? [{ name: "home", colour: "ink", place: first }, ...named] : named;
   }, [shape, drawing]);
   const click = useCallback((place: Place) => drawing && onPlace(place), [drawing, onPlace]);
   return <TrackMap tracks={tracks} spots={spots} still={drawing != null && drawing.length > 0} view={flown[0]} height={380} onClick={click} description="The plan on a map, north at the top." />;
@@ -400,6 +403,7 @@ interface SideProps {
 
 function PlanSide({ project, aircraft, answered, flown, options, blocks, change }: SideProps) {
   const help = useHelp(project, aircraft, answered, flown);
+  if (!flown && blocks.length === 0) return null;
   const error = flown?.curve.simulation.power_model?.mean_absolute_error_percent;
   return (
     <section class="card plan-side" aria-label="Change the plan">

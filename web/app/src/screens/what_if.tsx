@@ -30,7 +30,7 @@ function slidersOf(measured: Answered, question: Question): SliderOf[] {
     { name: "wind", key: "wind", label: "Wind", unit: "m/s", decimals: 1, basis: "assumption", range: [0, 15, 0.5], base: 0, base_words: "calm" },
     { name: "airspeed", key: "airspeed", label: "Airspeed", unit: "m/s", decimals: 1, basis: "physics", range: [1, Math.max(10, Math.ceil(2 * (speed ?? 5))), 0.5], base: null, base_words: answer.is_hover ? "hover" : speed != null ? `as flown, ${quantity(speed, 1, "m/s")}` : "as flown" },
     { name: "capacity", key: "capacity_ah", label: "Pack capacity", unit: "Ah", decimals: 1, basis: "measured", range: [0.1 * Math.ceil(2.5 * capacity), most, 0.1], base: question.capacity_ah == null ? answer.capacity_ah.value : null, base_words: answer.capacity_ah.value != null ? quantity(answer.capacity_ah.value, 1, "Ah") : "unknown" },
-    { name: "temperature", key: "temperature", label: "Temperature of the pack", unit: "°C", decimals: 0, basis: "assumption", range: [-20, 45, 1], base: null, base_words: "as flown" },
+    { name: "temperature", key: "temperature", label: "Pack temperature", unit: "°C", decimals: 0, basis: "assumption", range: [-20, 45, 1], base: null, base_words: "as flown" },
   ];
 }
 

@@ -49,3 +49,9 @@ export function date(iso: string | null | undefined): string {
 
 /// Compares two names so that "flight 10" follows "flight 9".
 export const naturally = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
+
+/// Returns "413 W", or below 100 W with one decimal "27.3 W".
+export const power = (watts: number | null | undefined) => quantity(watts, watts != null && Math.abs(watts) >= 99.95 ? 0 : 1, "W");
+
+/// Returns "5.02 Wh".
+export const energy = (watt_hours: number | null | undefined) => quantity(watt_hours, 2, "Wh");

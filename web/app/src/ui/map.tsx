@@ -17,6 +17,8 @@ export interface Track {
 
 export interface Spot {
   name: string;
+  /// Its name is always shown.
+  is_named?: boolean;
   colour: string;
   place: Place;
 }
@@ -61,14 +63,14 @@ export function TrackMap(props: MapProps) {
     const { map, layer } = drawn.current;
     layer.clearLayers();
     for (const track of props.tracks) {
-      const style = { color: colour(track.colour), weight: track.weight ?? 2.5, dashArray: track.dashed ? "6 5" : undefined };
+      const style = { className: `on-${track.colour}`, color: colour(track.colour), weight: track.weight ?? 2.5, dashArray: track.dashed ? "6 5" : undefined };
       (track.closed ? L.polygon(track.places, { ...style, fillOpacity: 0.08 }) : L.polyline(track.places, style))
         .bindTooltip(track.name, { sticky: true })
         .addTo(layer);
     }
     for (const spot of props.spots ?? []) {
       L.circleMarker(spot.place, { radius: 6, color: colour("card"), weight: 2, fillColor: colour(spot.colour), fillOpacity: 1 })
-        .bindTooltip(spot.name)
+        .bindTooltip(spot.name, { permanent: spot.is_named, direction: "right", className: spot.is_named ? "map-name" : "" })
         .addTo(layer);
     }
     const all = [...props.tracks.flatMap((track) => track.places), ...(props.spots ?? []).map((spot) => spot.place)];

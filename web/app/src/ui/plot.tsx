@@ -1,5 +1,5 @@
 // Plots over time or another axis, by uPlot: drag to zoom, double-click for all; plots of one group share their cursor.
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 
@@ -27,7 +27,12 @@ interface PlotProps {
   /// Plots with the same group share cursor and zoom.
   group?: string;
   y_range?: [number, number];
-  /// Vertical stripes, as phases of a flight: from, to, colour.
+  /// The whole of the x axis, where plots of a group have other ends.
+  x_range?: [number, number];
+  /// Where the cursor is moved to: a value of x.
+  at?: number | null;
+  /// Stripes, as phases of a flight: over the height, or with `strip` at the foot alone.
+  strip?: boolean;
   stripes?: { from: number; to: number; colour: string }[];
   /// Words at places of the plot.
   labels?: { x: number; y: number; text: string; colour: string; align?: CanvasTextAlign }[];
@@ -44,6 +49,8 @@ const colour = (name: string) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || name;
 
 function options(props: PlotProps, width: number): uPlot.Options {
+  const [first, last] = [props.x[0], props.x[props.x.length - 1]];
+  const x_range = props.x_range;
   const axis = { stroke: colour("ink2"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
   const series: uPlot.Series[] = [{ label: props.x_title }];
   const bands: uPlot.Band[] = [];
@@ -67,11 +74,11 @@ function options(props: PlotProps, width: number): uPlot.Options {
   return {
     width,
     height: props.height ?? 220,
-    scales: { x: { time: false }, y: props.y_range ? { range: props.y_range } : {} },
+    scales: { x: { time: false, ...(x_range && { range: (_, min, max) => (min === first && max === last ? x_range : [min, max]) }) }, y: props.y_range ? { range: props.y_range } : {} },
     axes: [
       props.x_axis === false ? { ...axis, size: 0, values: () => [] } :
       { ...axis, label: props.x_title, labelSize: 20, size: 32, font: "12px system-ui", labelFont: "12px system-ui" },
-      { ...axis, label: props.y_title, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
+      { ...axis, label: props.y_title || undefined, labelSize: 20, size: 46, font: "12px system-ui", labelFont: "12px system-ui" },
     ],
     series,
     bands,
@@ -82,8 +89,10 @@ function options(props: PlotProps, width: number): uPlot.Options {
         (plot) => {
           for (const stripe of props.stripes ?? []) {
             const left = plot.valToPos(stripe.from, "x", true);
-            plot.ctx.fillStyle = `${colour(stripe.colour)}1f`;
-            plot.ctx.fillRect(left, plot.bbox.top, plot.valToPos(stripe.to, "x", true) - left, plot.bbox.height);
+            const width = plot.valToPos(stripe.to, "x", true) - left;
+            const height = props.strip ? 6 * devicePixelRatio : plot.bbox.height;
+            plot.ctx.fillStyle = `${colour(stripe.colour)}${props.strip ? "" : "1f"}`;
+            plot.ctx.fillRect(left, plot.bbox.top + plot.bbox.height - height, width, height);
           }
         },
       ],
@@ -93,6 +102,8 @@ function options(props: PlotProps, width: number): uPlot.Options {
           ctx.font = `600 ${12 * devicePixelRatio}px system-ui, sans-serif`;
           for (const { x, y, text, colour: name, align = "left" } of props.labels ?? []) {
             ctx.textAlign = align;
+            ctx.textBaseline = "bottom";
+            ctx.lineJoin = "round";
             ctx.lineWidth = 4 * devicePixelRatio;
             ctx.strokeStyle = colour("card");
             ctx.fillStyle = colour(name);
@@ -109,7 +120,9 @@ function options(props: PlotProps, width: number): uPlot.Options {
 
 export function Plot(props: PlotProps) {
   const place = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  const shown = useRef<uPlot | null>(null);
+  // At once, so that what opens for paper is drawn on it.
+  useLayoutEffect(() => {
     const element = place.current;
     if (!element) return;
     const data = [props.x, ...props.lines.flatMap((line) => (line.band ? [line.band, line.y] : [line.y]))];
@@ -117,21 +130,25 @@ export function Plot(props: PlotProps) {
     const draw = () => {
       plot?.destroy();
       plot = new uPlot(options(props, element.clientWidth), data as uPlot.AlignedData, element);
+      shown.current = plot;
     };
     draw();
     const resized = new ResizeObserver(() => {
       if (plot && plot.width !== element.clientWidth) plot.setSize({ width: element.clientWidth, height: plot.height });
     });
     resized.observe(element);
-    const theme = matchMedia("(prefers-color-scheme: dark)");
-    theme.addEventListener("change", draw);
+    const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
+    for (const query of media) query.addEventListener("change", draw);
     document.addEventListener("themechange", draw);
     return () => {
       resized.disconnect();
-      theme.removeEventListener("change", draw);
+      for (const query of media) query.removeEventListener("change", draw);
       document.removeEventListener("themechange", draw);
       plot?.destroy();
     };
   }, [props.x, props.lines, props.stripes, props.height]);
+  useEffect(() => {
+    if (props.at != null && shown.current) shown.current.setCursor({ left: shown.current.valToPos(props.at, "x"), top: 1 });
+  }, [props.at]);
   return <div class="plot" role="img" aria-label={props.description} ref={place} />;
 }

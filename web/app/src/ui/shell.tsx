@@ -8,6 +8,8 @@ export interface Screen {
   name: string;
   icon?: ComponentChildren;
   show: () => ComponentChildren;
+  /// Parts of a screen that is alone: links to them stand in place of the tabs.
+  parts?: { id: string; name: string }[];
 }
 
 /// Returns the screen that the address names, or the first.
@@ -28,7 +30,7 @@ export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foo
   useEffect(() => {
     const follow = () => {
       setHash(location.hash);
-      scrollTo(0, 0);
+      if (!screen?.parts) scrollTo(0, 0);
     };
     addEventListener("hashchange", follow);
     return () => removeEventListener("hashchange", follow);

@@ -5,6 +5,8 @@ export interface PlanShape {
   lines: Place[][];
   areas: Place[][];
   home?: Place;
+  /// Places with a name that no line joins.
+  named: { name: string; place: Place }[];
 }
 
 const isPlace = (place: Place) => place.every(Number.isFinite) && !(place[0] === 0 && place[1] === 0);
@@ -44,8 +46,25 @@ function ofWaypoints(text: string, shape: PlanShape) {
   shape.lines.push(places.filter(isPlace));
 }
 
+const metres_a_degree = 111_320;
+
+/// Waypoints of Paparazzi: latitude and longitude, or metres from the plan's origin.
+function ofFlightPlan(page: Document, shape: PlanShape) {
+  const degrees = (text: string | null) => Number((text ?? "").replace(/^([NESW])(.*)$/, (_, side, rest) => (/[SW]/.test(side) ? `-${rest}` : rest)));
+  const plan = page.querySelector("flight_plan");
+  const [latitude, longitude] = [degrees(plan?.getAttribute("lat0") ?? null), degrees(plan?.getAttribute("lon0") ?? null)];
+  for (const point of page.querySelectorAll("waypoints > waypoint")) {
+    const at = (name: string) => Number(point.getAttribute(name));
+    const place: Place = point.hasAttribute("lat")
+      ? [degrees(point.getAttribute("lat")), degrees(point.getAttribute("lon"))]
+      : [latitude + at("y") / metres_a_degree, longitude + at("x") / (metres_a_degree * Math.cos((latitude * Math.PI) / 180))];
+    if (isPlace(place)) shape.named.push({ name: point.getAttribute("name") ?? "", place });
+  }
+}
+
 function ofXml(text: string, shape: PlanShape) {
   const page = new DOMParser().parseFromString(text, "text/xml");
+  ofFlightPlan(page, shape);
   for (const element of page.querySelectorAll("Polygon outerBoundaryIs coordinates, LineString coordinates")) {
     const places = (element.textContent ?? "").trim().split(/\s+/).map((one): Place => {
       const [longitude, latitude] = one.split(",").map(Number);
@@ -57,7 +76,7 @@ function ofXml(text: string, shape: PlanShape) {
 
 /// Returns the places of a file; none where it has none that can be drawn.
 export function shapeOf(path: string, text: string): PlanShape {
-  const shape: PlanShape = { lines: [], areas: [] };
+  const shape: PlanShape = { lines: [], areas: [], named: [] };
   try {
     if (/\.geojson$/i.test(path)) ofGeoJson(JSON.parse(text), shape);
     else if (/\.plan$/i.test(path)) ofPlan(JSON.parse(text) as Json, shape);

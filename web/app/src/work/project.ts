@@ -300,9 +300,12 @@ export class Project {
     const first = this.aircraft();
     if (first) this.ask(first.id, first.question);
     for (const one of this.state.aircraft) this.work(() => this.readTrends(one.id), false);
-    for (const one of this.state.aircraft)
-      if (one.id !== first?.id) this.work(async () => { await this.answer(one.id, one.question); }, false);
-    this.work(() => this.keepResults(), false);
+    // After the small drawings of all flights.
+    this.work(async () => {
+      for (const one of this.state.aircraft)
+        if (one.id !== first?.id) this.work(() => this.answer(one.id, one.question), false);
+      this.work(() => this.keepResults(), false);
+    }, false);
   }
 
   /// Makes the lines of the logs and the aircraft of what a batch found.
@@ -359,12 +362,15 @@ export class Project {
     const flights = result.out ? (JSON.parse(result.out) as { flights: FlownFlight[] }).flights : [];
     const by_name = new Map(flights.map((flight) => [flight.flight, flight]));
     this.setAircraft(id, { logs: aircraft.logs.map((line) => ({ ...line, flown: by_name.get(line.flight) })) });
-    for (const line of aircraft.logs)
-      this.work(async () => {
-        const power = await this.powerOf(aircraft.folder, line.flight);
-        const now = this.state.aircraft.find((one) => one.id === id);
-        if (now) this.setAircraft(id, { logs: now.logs.map((one) => (one.path === line.path ? { ...one, power } : one)) });
-      }, false);
+    for (const line of aircraft.logs) this.idle.unshift(() => this.readPower(id, line));
+  }
+
+  private async readPower(id: string, line: LogLine) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    if (!aircraft) return;
+    const power = await this.powerOf(aircraft.folder, line.flight);
+    const now = this.state.aircraft.find((one) => one.id === id) ?? aircraft;
+    this.setAircraft(id, { logs: now.logs.map((one) => (one.path === line.path ? { ...one, power } : one)) });
   }
 
   /// Returns some of the samples of power, enough for a small drawing.

@@ -38,14 +38,33 @@ export function failsafeOptions(question: Question, answer: Answer): string[] {
     ...(home_m != null ? ["--home-distance", String(home_m)] : []),
     ...(airspeed != null ? ["--airspeed", String(airspeed)] : []),
     ...(question.wind ? ["--wind", String(question.wind)] : []),
-    "--reserve",
-    String(answer.reserve_soc_percent),
   ];
+}
+
+/// Returns what is asked beyond the flights as they were: "With 0.5 kg, in 4 m/s of wind".
+export function asWords(question: Question): string {
+  const parts = [
+    question.payload_kg != null ? `with ${question.payload_kg} kg` : "",
+    question.wind ? `in ${question.wind} m/s of wind` : "",
+    question.airspeed != null ? `at ${question.airspeed} m/s` : "",
+    question.temperature != null ? `at ${question.temperature} °C` : "",
+  ];
+  return parts.filter(Boolean).join(", ");
+}
+
+/// Returns a text of the program with its options named as this page does.
+export function inPageWords(text: string): string {
+  return text
+    .replace(/--capacity AH/g, "the capacity of the pack")
+    .replace(/\(option --mass\)/g, "(the mass below the slider Payload)")
+    .replace(/--airspeed/g, "the slider Airspeed")
+    .replace(/--home-distance/g, "the distance from home")
+    .replace(/--payload/g, "the slider Payload");
 }
 
 /// Returns a text as a shell takes it.
 export function quoted(text: string): string {
-  return /^[\w@%+=:,./-]+$/.test(text) && !text.startsWith("-") ? text : `'${text.replaceAll("'", `'\\''`)}'`;
+  return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
 }
 
 const by_folder = 4;
@@ -53,5 +72,5 @@ const by_folder = 4;
 /// Returns logs as a command line has them: by name, or where they are many their folder.
 export function logsShown(logs: string[]): string {
   if (logs.length > by_folder) return "LOGS";
-  return logs.map((log) => quoted(log.replace(/^logs\//, ""))).join(" ");
+  return logs.map((log) => quoted(log.replace(/^logs\//, "").replace(/^-/, "./-"))).join(" ");
 }
