@@ -10,12 +10,10 @@ import { Project } from "./work/project";
 const place = document.getElementById("app");
 const carried = carriedDocument();
 if (place && !carried && hasEngine()) {
-  void openEngine().then((engine) => {
-    const project = new Project(engine);
-    place.replaceChildren();
-    render(<EngineApp project={project} />, place);
-    void project.start();
-  });
+  const project = new Project(openEngine());
+  place.replaceChildren();
+  render(<EngineApp project={project} />, place);
+  void project.start();
 } else if (place) {
   place.replaceChildren();
   render(<Shell screens={[{ id: "report", name: "Report", show: () => <h1>{carried?.title ?? "FlightWatt"}</h1> }]} />, place);

@@ -24,7 +24,7 @@ const columns: Column<Row>[] = [
     cell: ({ aircraft, line }) => (
       <>
         <bdi>{line.flight}</bdi>
-        <span class="under">{[line.flown?.date ? date(line.flown.date) : "", aircraft.name, line.state === "part" ? "in part" : ""].filter(Boolean).join(" · ")}</span>
+        <span class="under">{[line.flown?.date ? date(line.flown.date) : aircraft.name, line.state === "part" ? "in part" : ""].filter(Boolean).join(" · ")}</span>
       </>
     ),
     by: ({ line }) => line.flight,

@@ -74,6 +74,8 @@ function options(props: PlotProps, width: number): uPlot.Options {
   return {
     width,
     height: props.height ?? 220,
+    // Plots above each other have the same sides.
+    ...(props.group && { padding: [8, 12, props.x_axis === false ? 4 : 0, 0] as uPlot.Padding }),
     scales: { x: { time: false, ...(x_range && { range: (_, min, max) => (min === first && max === last ? x_range : [min, max]) }) }, y: props.y_range ? { range: props.y_range } : {} },
     axes: [
       props.x_axis === false ? { ...axis, size: 0, values: () => [] } :

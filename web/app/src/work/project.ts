@@ -268,7 +268,7 @@ export class Project {
 
   private async keepResults() {
     const results = new Map<string, Blob>();
-    for (const { path } of await this.engine.list())
+    for (const path of (await this.engine.list()).map((file) => file.path.replace(/^\//, "")))
       if (path.startsWith(`${out_folder}/`) && kept_files.test(path))
         results.set(path, new Blob([(await this.engine.read(path)) as BlobPart]));
     await storage.keep(results).catch(() => undefined);
