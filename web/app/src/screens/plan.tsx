@@ -330,7 +330,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
       {!shown && <h1>{drawing ? "Click the corners of the area" : options ? (failed ? `${fileName(options.plan)}: not flown` : `${fileName(options.plan)}: computing`) : "Does a plan fit?"}</h1>}
       {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
       {shown && <Band curve={shown.curve} asking={asking} />}
-      <div class="plan">
+      <div class={`plan${options || drawing ? "" : " alone"}`}>
         <div class="plan-left">
           {!options && !drawing ? (
             <NoPlan project={project} onDraw={() => setDrawing([])} />
@@ -370,7 +370,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           <PlanSide project={project} aircraft={aircraft} answered={answered} flown={shown} options={options} blocks={blocks} change={change} />
         )}
       </div>
-      <Command line={options ? planCommand(aircraft.folder, options, answered?.question.payload_kg) : "flightwatt new-mission --plan FILE"} />
+      <Command line={options ? planCommand(aircraft.folder, options, answered?.question.payload_kg) : `flightwatt new-mission --model ${aircraft.folder}/model.toml --battery ${aircraft.folder}/answer-pack.toml --plan FILE`} />
     </>
   );
 }
