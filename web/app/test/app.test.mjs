@@ -55,6 +55,7 @@ async function open(t, { width = 1440, height = 900, scheme = "light" } = {}) {
   return page;
 }
 
+const named = (name, buffer) => ({ name, mimeType: "application/octet-stream", buffer });
 const sample = (number) => ["data", "log"].map((ending) => path.join(logs, `opterra_synthetic_0${number}.${ending}`));
 const choose = (page, files, label = "Choose files") => page.setInputFiles(`input[aria-label="${label}"]`, files);
 
@@ -63,8 +64,11 @@ async function dropThree(page) {
   await page.waitForSelector(".log.used", patience);
 }
 
+/// The sample logs do not state their pack.
 async function showAnswer(page) {
   await page.click('nav a[href="#answer"]');
+  await page.fill("#asked-capacity", "3.2", patience);
+  await page.click(".asked button");
   await page.waitForSelector(".figures .figure-value b", patience);
 }
 
@@ -86,7 +90,7 @@ test("three logs become one aircraft, a line each, and an answer with its chance
 
 test("a log that is refused has its reason", { skip, ...patience }, async (t) => {
   const page = await open(t);
-  await choose(page, [...sample(1), { name: "holiday.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no log at all\n") }]);
+  await choose(page, [named("holiday.jpg", Buffer.from("no log at all\n"))]);
   await page.waitForSelector(".log.not", patience);
   assert.match(await page.textContent(".log.not .log-reason"), /telemetry/);
 });
@@ -96,7 +100,6 @@ test("hostile names are shown and stay names", { skip, ...patience }, async (t) 
   const data = await readFile(sample(1)[0]);
   const definitions = await readFile(sample(1)[1]);
   const hostile = "<img src=x onerror=\"document.title='owned'\">";
-  const named = (name, buffer) => ({ name, mimeType: "application/octet-stream", buffer });
   await choose(page, [
     named(`${hostile}.data`, data), named(`${hostile}.log`, definitions), named("-o.bin", Buffer.from("x")),
     named("日本\u202ebin.data", Buffer.from("x")), named(`${"n".repeat(240)}.bin`, Buffer.from("x")),
@@ -148,6 +151,7 @@ test("the second visit has the logs, and Forget all has none", { skip, ...patien
 
 test("everything is reached by the keyboard", { skip, ...patience }, async (t) => {
   const page = await open(t);
+  const dialog = page.waitForEvent("filechooser", patience);
   const tabTo = async (name) => {
     for (let i = 0; i < 60; i += 1) {
       await page.keyboard.press("Tab");
@@ -157,11 +161,14 @@ test("everything is reached by the keyboard", { skip, ...patience }, async (t) =
     assert.fail(`the keyboard does not reach ${name}`);
   };
   await tabTo("Choose files");
-  const dialog = page.waitForEvent("filechooser");
   await page.keyboard.press("Enter");
   await (await dialog).setFiles([1, 2, 3].flatMap(sample));
   await page.waitForSelector(".log.used", patience);
-  await tabTo("Answer");
+  await tabTo("Answer for Opterra_synthetic");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#asked-capacity", patience);
+  await page.focus("#asked-capacity");
+  await page.keyboard.type("3.2");
   await page.keyboard.press("Enter");
   await page.waitForSelector(".figures .figure-value b", patience);
   await tabTo("Reserve");

@@ -93,16 +93,20 @@ export function ChargePlot({ curve, old, name }: { curve: Curve; old: Curve | nu
     () => curve.phases.map((phase) => ({ from: phase.from / 60, to: phase.to / 60, colour: phase_colours[phase.name] ?? "cruise" })),
     [curve],
   );
-  const { reserve_soc_percent: reserve, final_soc_percent: final, duration_s } = curve.simulation;
+  const { reserve_soc_percent: reserve, final_soc_percent: final, duration_s, depleted_at_s: empty_s } = curve.simulation;
+  const end_s = empty_s ?? duration_s;
+  const words = empty_s != null ? `empty after ${duration(empty_s)}` : `${number(final, 0)} % after ${duration(duration_s)}`;
   const labels = useMemo(
     () => [
-      { x: 0.1, y: reserve + 1, text: `reserve ${number(reserve, 0)} %`, colour: "alarm" },
-      { x: (curve.time_s[curve.time_s.length - 1] ?? 0) / 60, y: final > 45 ? final - 14 : final + 34, text: `${number(final, 0)} % after ${duration(duration_s)}`, colour: "ink", align: "right" as const },
+      { x: 0, y: reserve + 1, text: ` reserve ${number(reserve, 0)} %`, colour: "alarm" },
+      { x: end_s / 60, y: final > 60 ? final - 14 : 88, text: words, colour: empty_s != null ? "alarm" : "ink", align: "right" as const },
     ],
     [curve],
   );
+  // Of a flight that runs empty, what would follow is left out.
+  const x_range = empty_s != null ? ([0, Math.min(1.4 * empty_s, duration_s) / 60] as [number, number]) : undefined;
   return (
-    <Plot x={x} lines={lines} stripes={stripes} strip labels={labels} legend={false} x_title="Time [min]" y_title="Charge [%]" y_range={[0, 100]} height={250}
+    <Plot x={x} lines={lines} stripes={stripes} strip labels={labels} legend={false} x_title="Time [min]" y_title="Charge [%]" y_range={[0, 100]} x_range={x_range} height={250}
       description={`${name}: charge over time, landing with ${number(final, 0)} % after ${duration(duration_s)}; reserve ${number(reserve, 0)} %.`} />
   );
 }

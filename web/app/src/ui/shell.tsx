@@ -25,7 +25,7 @@ function nextTheme() {
 }
 
 /// Shows the screen that the address names; `aside` stands at the right of the tabs.
-export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foot?: ComponentChildren }) {
+export function Shell(props: { name?: string; screens: Screen[]; aside?: ComponentChildren; foot?: ComponentChildren }) {
   const [hash, setHash] = useState(location.hash);
   useEffect(() => {
     const follow = () => {
@@ -43,15 +43,21 @@ export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foo
       </a>
       <header class="bar">
         <p class="brand">
-          <Icon name="brand" /> FlightWatt
+          <Icon name="brand" /> {props.name ?? "FlightWatt"}
         </p>
-        <nav aria-label="Screens">
-          {props.screens.map((one) => (
-            <a href={`#${one.id}`} aria-current={one.id === screen?.id ? "page" : undefined}>
-              {one.icon} {one.name}
-            </a>
-          ))}
-        </nav>
+        {screen?.parts ? (
+          <nav class="parts" aria-label="Parts of the page">
+            {screen.parts.map(({ id, name }) => <a href={`#${id}`}>{name}</a>)}
+          </nav>
+        ) : (
+          <nav aria-label="Screens">
+            {props.screens.map((one) => (
+              <a href={`#${one.id}`} aria-current={one.id === screen?.id ? "page" : undefined}>
+                {one.icon} {one.name}
+              </a>
+            ))}
+          </nav>
+        )}
         <div class="bar-aside">
           {props.aside}
           <button type="button" class="quiet" aria-label="Light or dark" title="Light or dark" onClick={nextTheme}>
@@ -59,7 +65,7 @@ export function Shell(props: { screens: Screen[]; aside?: ComponentChildren; foo
           </button>
         </div>
       </header>
-      <main tabIndex={-1}>{screen?.show()}</main>
+      <main id="main" tabIndex={-1}>{screen?.show()}</main>
       <footer>{props.foot}</footer>
     </>
   );

@@ -80,7 +80,12 @@ async function missionOf(engine: Engine, folder: string, options: PlanOptions, p
 /// Flies a plan; returns why it cannot be flown where it cannot.
 export async function flyPlan(project: Project, aircraft: Aircraft, answered: Answered, options: PlanOptions): Promise<FlownPlan | string> {
   return project.withAnswer(aircraft.id, answered, async (engine) => {
-    const made = await missionOf(engine, aircraft.folder, options, answered.question.payload_kg);
+    const { payload_kg } = answered.question;
+    let made = await missionOf(engine, aircraft.folder, options, payload_kg);
+    const flown = answered.answer.airspeed_m_per_s.value;
+    // A model that does not know what airspeed costs is flown at the speed of its flights, as the program asks for.
+    if (typeof made === "string" && /--airspeed/.test(made) && options.airspeed == null && flown != null)
+      made = await missionOf(engine, aircraft.folder, { ...options, airspeed: Math.round(10 * flown) / 10 }, payload_kg);
     if (typeof made === "string") return made;
     const curve = await project.curveOrError(made.file);
     if (typeof curve === "string") return curve;
