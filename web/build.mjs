@@ -1,6 +1,7 @@
 // Bundles the front end: node web/build.mjs FOLDER writes FOLDER/app.js (one script, without modules) and FOLDER/app.css.
 import { build } from "esbuild";
 import { fileURLToPath } from "node:url";
+import { workerText } from "./worker_text.mjs";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
 const folder = process.argv[2];
@@ -20,6 +21,7 @@ try {
     jsx: "automatic",
     jsxImportSource: "preact",
     loader: { ".png": "empty" },  // Leaflet's marker pictures, which are not used
+    plugins: [workerText],
     legalComments: "eof",
     logLevel: "warning",
   });
