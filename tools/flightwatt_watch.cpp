@@ -1,14 +1,17 @@
 // flightwatt watch: the energy of a flight that is in the air, once a second.
 
 #include "base/atomic_file.h"
+#include "base/number.h"
 #include "base/signal_watch.h"
 #include "cli/output/live_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
+#include "live/announcer.h"
 #include "live/live_schedule.h"
 #include "live/live_state.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
+#include "live/sources/datagrams.h"
 #include "report/page.h"
 #include "stages.h"
 #include "telemetry/log_configuration.h"
@@ -31,7 +34,49 @@ struct WatchArguments {
     bool replans = false;
     std::optional<std::string> record;
     std::optional<std::string> serve;
+    bool announces = false;
+    std::string announce_as = "245:191";
+    std::optional<std::string> announce_to;
     bool until_landed = false;
+};
+
+/// Tells ground stations of the prediction, over the link or to an address of its own.
+class Announcement {
+  public:
+    Announcement(const WatchArguments& arguments, live::MessageSource& source) : source_(source) {
+        if (!arguments.announces) return;
+        const auto [system, component] = parse_identity(arguments.announce_as);
+        announcer_.emplace(system, component);
+        if (arguments.announce_to) datagrams_.emplace(*arguments.announce_to);
+    }
+
+    void print_state(const live::LiveState& state) {
+        if (!announcer_) return;
+        for (const auto& packet : announcer_->packets(state, seconds_since(start_))) {
+            if (datagrams_)
+                datagrams_->send(packet);
+            else
+                source_.send(packet);
+        }
+    }
+
+  private:
+    /// "SYSTEM:COMPONENT", each 1 to 255.
+    static std::pair<std::uint8_t, std::uint8_t> parse_identity(std::string_view text) {
+        constexpr std::uint64_t max_id = 255;
+        const auto colon = text.find(':');
+        const auto system = parse_unsigned(text.substr(0, colon));
+        const auto component = colon == std::string_view::npos ? std::nullopt : parse_unsigned(text.substr(colon + 1));
+        const auto is_id = [](const auto& id) { return id && *id >= 1 && *id <= max_id; };
+        if (!is_id(system) || !is_id(component))
+            throw UsageError(fmt::format("--announce-as {}: expected SYSTEM:COMPONENT, each 1 to 255", text));
+        return {static_cast<std::uint8_t>(*system), static_cast<std::uint8_t>(*component)};
+    }
+
+    live::MessageSource& source_;
+    std::optional<live::Announcer> announcer_;
+    std::optional<live::Datagrams> datagrams_;
+    Clock::time_point start_ = Clock::now();
 };
 
 /// Publishes the state on a page.
@@ -158,11 +203,13 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
     cli::WatchOutput speaker(call, watched.compute);
     LivePage page(call, arguments.serve, watched.compute, watched.basis);
+    Announcement announcement(arguments, *source);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
         speaker.print_state(state);
         page.print_state(state);
+        announcement.print_state(state);
         if (!speaker.is_read()) return "the reader of the output has ended";
         return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
@@ -210,6 +257,14 @@ with its source, or by a signal, and then prints its last prediction. The source
                 "write the received messages as a log into this folder");
     options.add("serve", arguments.serve, {.value = "PORT"},
                 "serve a page on this machine; at ADDRESS:PORT also to others");
+    options.add(
+        "announce", arguments.announces,
+        "tell the ground station by MAVLink: fw_land, fw_home, fw_resv once a second, a text when an alarm changes",
+        {.needs = {"mavlink"}});
+    options.add("announce-to", arguments.announce_to, {.value = "ADDRESS:PORT", .needs = {"announce"}},
+                "send that to this UDP address instead of back over the link");
+    options.add("announce-as", arguments.announce_as, {.value = "SYSTEM:COMPONENT", .needs = {"announce"}},
+                "its MAVLink identity; a ground station may show only the texts of the aircraft's own system");
     options.add("silence-s", arguments.live.silence_threshold_s,
                 {.value = "S", .min = 0.0, .above_min = true, .unit = "s"},
                 "silence after which the link counts as lost");
