@@ -1,12 +1,12 @@
 // Names of files, tables and plans as the page reads them.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { load } from "./load.mjs";
+import { bundled } from "../../bundled.mjs";
 
-const files = await load("work/files.ts");
-const csv = await load("work/csv.ts");
-const shapes = await load("work/plan_shapes.ts");
-const question = await load("work/question.ts");
+const files = await bundled("work/files.ts");
+const csv = await bundled("work/csv.ts");
+const shapes = await bundled("work/plan_shapes.ts");
+const question = await bundled("work/question.ts");
 
 test("a path never leads out of its folder", () => {
   assert.equal(files.safePath("../../etc/passwd"), "etc/passwd");

@@ -89,6 +89,8 @@ export interface Manifest {
 
 /// OUT/flights/NAME.record.json, as far as it is shown: what was found in a log.
 export interface LogRecord {
+  accepted: boolean;
+  error: string;
   aircraft_name: string;
   kind: string;
   why_not_fitted: string;

@@ -1,14 +1,21 @@
-// The logs of this visit, what the engine found in them, and the queue of its work. Screens show its state.
+// The logs of this visit, what the engine found in them, and the answers. Screens show its state.
 import { useEffect, useState } from "preact/hooks";
-import { Cancelled, type Engine, type RunResult } from "../engine/engine";
+import type { Engine, RunResult } from "../engine/engine";
 import { naturally } from "../ui/format";
-import { numbers, parseCsv, texts, track, type Csv } from "./csv";
+import { aircraftOf, linesOf, type BatchFound } from "./batch_lines";
+import { numbers, parseCsv, track, type Csv } from "./csv";
+import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, LogRecord, Manifest, Simulation } from "./documents";
 import { freePath, kindOf, safePath, type Dropped } from "./files";
 import * as storage from "./keep";
 import { optionsOf, type Question } from "./question";
+import { WorkQueue } from "./queue";
+import { logs_folder, type Aircraft, type Answered, type Curve, type LogLine, type State } from "./state";
 
-export const logs_folder = "logs";
+export type { Aircraft, Answered, Curve, LogLine, State } from "./state";
+
+/// The program's exit code where it refused a file.
+const input_rejected = 3;
 const plans_folder = "plans";
 const missions_folder = "missions";
 const out_folder = "out";
@@ -16,71 +23,6 @@ const settings_name = "settings.json";
 /// Answers quicker than this leave time for those of the sliders' steps.
 const quick_s = 0.5;
 const kept_files = /\.(json|toml|csv)$/;
-
-/// A line of the list of logs.
-export interface LogLine {
-  path: string;
-  bytes: number;
-  state: "waiting" | "used" | "part" | "not";
-  /// Why it is not used, or what of it is not; empty if all is.
-  reason: string;
-  flight: string;
-  flown?: FlownFlight;
-  power?: number[];
-}
-
-/// Charge over time of the answer's mission.
-export interface Curve {
-  time_s: number[];
-  soc: (number | null)[];
-  compute_w: (number | null)[];
-  phases: { name: string; from: number; to: number }[];
-  band?: { time_s: number[]; low: (number | null)[]; high: (number | null)[] };
-  simulation: Simulation;
-}
-
-export interface Answered {
-  question: Question;
-  answer: Answer;
-  curve: Curve | null;
-  seconds: number;
-}
-
-export interface Aircraft {
-  id: string;
-  name: string;
-  kind: string;
-  folder: string;
-  logs: LogLine[];
-  question: Question;
-  /// Without what-if: the capacity alone may be stated.
-  measured?: Answered;
-  now?: Answered;
-  failed?: string;
-  /// What a step of a slider changes.
-  hints: Record<string, Answered | null>;
-}
-
-export interface Progress {
-  text: string;
-  done: number;
-  of: number;
-}
-
-export interface State {
-  ready: boolean;
-  failed: string;
-  aircraft: Aircraft[];
-  chosen: string;
-  unused: LogLine[];
-  waiting: LogLine[];
-  plans: string[];
-  progress: Progress | null;
-  read_s: number | null;
-  busy: boolean;
-}
-
-type Job = () => Promise<void>;
 
 const decoder = new TextDecoder();
 const names = (path: string) => path.split("/").pop() ?? path;
@@ -97,9 +39,7 @@ export class Project {
     ready: false, failed: "", aircraft: [], chosen: "", unused: [], waiting: [], plans: [], progress: null, read_s: null, busy: false,
   };
   private listeners = new Set<() => void>();
-  private urgent: Job[] = [];
-  private idle: Job[] = [];
-  private working = false;
+  private readonly queue = new WorkQueue((error) => this.set({ failed: error.message, progress: null }), () => this.set({ busy: false }));
   private files = new Map<string, File | Blob>();
   private wanted = new Map<string, Question>();
   /// The question whose pack and mission are in an aircraft's folder.
@@ -136,33 +76,11 @@ export class Project {
     if (aircraft && !aircraft.now) this.ask(aircraft.id, aircraft.question);
   }
 
-  // --- work, one run at a time; what a person waits for goes first
-
-  private work(job: Job, is_urgent: boolean) {
-    (is_urgent ? this.urgent : this.idle).push(job);
-    void this.pump();
-  }
-
-  private async pump() {
-    if (this.working) return;
-    this.working = true;
-    for (;;) {
-      const job = this.urgent.shift() ?? this.idle.shift();
-      if (!job) break;
-      try {
-        await job();
-      } catch (error) {
-        const failed = error instanceof Cancelled ? "" : String(error instanceof Error ? error.message : error);
-        this.set({ failed, progress: null });
-      }
-    }
-    this.working = false;
-    this.set({ busy: false });
-  }
+  // --- work
 
   /// Runs the program when it is free.
   run(args: string[], is_urgent = true): Promise<RunResult> {
-    return new Promise((done, fail) => this.work(async () => this.engine.run(args).then(done, fail), is_urgent));
+    return this.queue.result(() => this.engine.run(args), is_urgent);
   }
 
   async text(path: string): Promise<string> {
@@ -186,7 +104,7 @@ export class Project {
       if (!path.startsWith(`${out_folder}/`)) this.files.set(path, data);
     }
     this.set({ ready: true, plans: await this.plans() });
-    if (this.logs().length > 0) this.work(() => this.readLogs(), true);
+    if (this.logs().length > 0) this.queue.add(() => this.readLogs(), true);
   }
 
   private pathsOf(folder: string): string[] {
@@ -226,7 +144,7 @@ export class Project {
     }
     const plans = [...stored.keys()].filter((path) => !path.startsWith(`${logs_folder}/`));
     this.set({ failed: "", plans: await this.plans() });
-    if (stored.size > plans.length) this.work(() => this.readLogs(), true);
+    if (stored.size > plans.length) this.queue.add(() => this.readLogs(), true);
     storage.keep(stored).catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
     return plans;
   }
@@ -254,8 +172,7 @@ export class Project {
   }
 
   cancel() {
-    this.urgent = [];
-    this.idle = [];
+    this.queue.clear();
     this.wanted.clear();
     this.engine.cancel();
     this.set({ progress: null, busy: false });
@@ -291,68 +208,47 @@ export class Project {
       const found = /\[(\d+)\/(\d+)\] (.*)$/.exec(line);
       if (found) this.set({ progress: { text: `Reading ${found[3]}`, done: Number(found[1]), of: Number(found[2]) } });
     });
-    if (!result.out) {
-      this.set({ failed: errorsOf(result), progress: null });
-      return;
-    }
-    await this.showBatch(JSON.parse(result.out) as Batch, waiting);
+    const batch = result.out ? (JSON.parse(result.out) as Batch) : await this.refusedBatch(result);
+    await this.showBatch(batch, waiting);
     this.set({ waiting: [], progress: null, read_s: (performance.now() - started) / 1000 });
     const first = this.aircraft();
     if (first) this.ask(first.id, first.question);
-    for (const one of this.state.aircraft) this.work(() => this.readTrends(one.id), false);
+    for (const one of this.state.aircraft) this.queue.add(() => this.readTrends(one.id), false);
     // After the small drawings of all flights.
-    this.work(async () => {
+    this.queue.add(async () => {
       for (const one of this.state.aircraft)
-        if (one.id !== first?.id) this.work(() => this.answer(one.id, one.question), false);
-      this.work(() => this.keepResults(), false);
+        if (one.id !== first?.id) this.queue.add(() => this.answer(one.id, one.question), false);
+      this.queue.add(() => this.keepResults(), false);
     }, false);
   }
 
-  /// Makes the lines of the logs and the aircraft of what a batch found.
-  private async showBatch(batch: Batch, lines: LogLine[]) {
-    const manifest = await this.json<Manifest>(`${out_folder}/batch.json`);
-    const by_path = new Map(lines.map((line) => [line.path, line]));
-    const results = new Map(batch.logs.map((log) => [log.flight, log]));
-    const owners = new Map(batch.aircraft.flatMap((one) => one.flights.map((flight) => [flight, one.aircraft] as const)));
-    const found = new Map<string, LogLine[]>();
-    const unused: LogLine[] = [];
-    const records = new Map<string, LogRecord>();
-    for (const { flight, log, why_not_fitted } of manifest.flights) {
-      const line: LogLine = { ...(by_path.get(log) ?? { path: log, bytes: 0, state: "not", reason: "", flight }), flight };
-      by_path.delete(log);
-      const result = results.get(flight);
-      const owner = owners.get(flight);
-      if (!result?.accepted) {
-        unused.push({ ...line, state: "not", reason: withoutPath(result?.error ?? "", log) });
-        continue;
-      }
-      const record = await this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`);
-      records.set(flight, record);
-      const why = why_not_fitted || record.why_not_fitted || (owner ? "" : record.lacks_power || warningsOf(record));
-      const parts = [...new Set((record.measured?.excluded ?? []).map((one) => `${one.phase} not used: ${one.reason}`))];
-      const lack = record.lacks_power || why;
-      if (!owner || lack) unused.push({ ...line, state: "not", reason: lack || "no flight with measured power" });
-      else found.set(owner, [...(found.get(owner) ?? []), { ...line, state: parts.length > 0 ? "part" : "used", reason: parts.join("; ") || warningsOf(record) }]);
-    }
-    for (const line of by_path.values()) unused.push({ ...line, state: "not", reason: "the program does not name it" });
-    this.set({ unused, aircraft: this.aircraftOf(batch, found, records) });
-    if (!this.state.aircraft.some((one) => one.id === this.state.chosen)) {
-      const kept = this.state.aircraft.find((one) => one.id === this.settings.chosen);
-      this.set({ chosen: (kept ?? this.state.aircraft[0])?.id ?? "" });
-    }
+  /// A batch without a flight prints no JSON; its folder has the reasons.
+  private async refusedBatch(result: RunResult): Promise<Batch> {
+    if (result.code !== input_rejected) throw new Error(errorsOf(result));
+    const { flights } = await this.json<Manifest>(`${out_folder}/batch.json`);
+    const records = flights.map(({ flight }) => this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`));
+    const logs = (await Promise.all(records)).map(({ accepted, error }, i) => ({ flight: flights[i]?.flight ?? "", accepted, error }));
+    return { aircraft: [], logs };
   }
 
-  private aircraftOf(batch: Batch, found: Map<string, LogLine[]>, records: Map<string, LogRecord>): Aircraft[] {
-    const result = batch.aircraft.filter((one) => found.has(one.aircraft)).map((one): Aircraft => {
-      const record = records.get(one.flights[0] ?? "");
-      const old = this.state.aircraft.find((before) => before.id === one.aircraft);
-      const logs = (found.get(one.aircraft) ?? []).sort((a, b) => naturally(a.path, b.path));
-      return {
-        id: one.aircraft, name: record?.aircraft_name || one.aircraft, kind: record?.kind ?? "", folder: one.folder, logs,
-        question: old?.question ?? this.settings.questions?.[one.aircraft] ?? {}, hints: {},
-      };
-    });
-    return result.sort((a, b) => b.logs.length - a.logs.length);
+  private async readFound(batch: Batch): Promise<BatchFound> {
+    const manifest = await this.json<Manifest>(`${out_folder}/batch.json`);
+    const records = new Map<string, LogRecord>();
+    for (const { flight, accepted } of batch.logs)
+      if (accepted) records.set(flight, await this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`));
+    return { batch, manifest, records };
+  }
+
+  private async showBatch(batch: Batch, waiting: LogLine[]) {
+    const found = await this.readFound(batch);
+    const lines = linesOf(found, waiting);
+    const questionOf = (id: string) => this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
+    const aircraft = aircraftOf(found, lines, questionOf);
+    const unused = lines.filter(({ line }) => line.state === "not").map(({ line }) => line);
+    this.set({ unused, aircraft });
+    if (aircraft.some((one) => one.id === this.state.chosen)) return;
+    const kept = aircraft.find((one) => one.id === this.settings.chosen);
+    this.set({ chosen: (kept ?? aircraft[0])?.id ?? "" });
   }
 
   private async readTrends(id: string) {
@@ -362,7 +258,7 @@ export class Project {
     const flights = result.out ? (JSON.parse(result.out) as { flights: FlownFlight[] }).flights : [];
     const by_name = new Map(flights.map((flight) => [flight.flight, flight]));
     this.setAircraft(id, { logs: aircraft.logs.map((line) => ({ ...line, flown: by_name.get(line.flight) })) });
-    for (const line of aircraft.logs) this.idle.unshift(() => this.readPower(id, line));
+    for (const line of aircraft.logs) this.queue.addNext(() => this.readPower(id, line));
   }
 
   private async readPower(id: string, line: LogLine) {
@@ -395,7 +291,7 @@ export class Project {
     this.wanted.set(id, question);
     this.set({ busy: true });
     if (is_waiting) return;
-    this.work(async () => {
+    this.queue.add(async () => {
       const latest = this.wanted.get(id);
       this.wanted.delete(id);
       if (latest) await this.answer(id, latest);
@@ -423,7 +319,7 @@ export class Project {
     const now = await this.answered(aircraft, question);
     if (typeof now === "string") this.setAircraft(id, { failed: now });
     else this.setAircraft(id, is_base ? { measured: now, now, failed: undefined, hints: {} } : { now, failed: undefined });
-    if (is_base && typeof now !== "string" && now.seconds < quick_s) this.work(() => this.hints(id), false);
+    if (is_base && typeof now !== "string" && now.seconds < quick_s) this.queue.add(() => this.hints(id), false);
   }
 
   /// Answers for a step of each slider, one after the other, while nobody waits.
@@ -437,17 +333,17 @@ export class Project {
     const now = this.state.aircraft.find((one) => one.id === id);
     if (now?.measured !== measured) return;
     this.setAircraft(id, { hints: { ...now.hints, [name]: typeof found === "string" ? null : found } });
-    this.work(() => this.hints(id), false);
+    this.queue.add(() => this.hints(id), false);
   }
 
   /// Does work with the engine on the files of an aircraft's answer.
   withAnswer<T>(id: string, answered: Answered, use: (engine: Engine) => Promise<T>): Promise<T> {
-    return new Promise((done, fail) =>
-      this.work(async () => {
-        const aircraft = this.state.aircraft.find((one) => one.id === id);
-        if (aircraft && this.written.get(id) !== JSON.stringify(answered.question)) await this.answered(aircraft, answered.question);
-        await use(this.engine).then(done, fail);
-      }, true));
+    return this.queue.result(async () => {
+      const aircraft = this.state.aircraft.find((one) => one.id === id);
+      const is_written = this.written.get(id) === JSON.stringify(answered.question);
+      if (aircraft && !is_written) await this.answered(aircraft, answered.question);
+      return use(this.engine);
+    }, true);
   }
 
   /// Runs the program on the files of an answer; what-if may have left those of another question.
@@ -516,30 +412,9 @@ async function missionsAmong(files: Dropped[]): Promise<Set<string>> {
   return found;
 }
 
-function withoutPath(error: string, log: string): string {
-  return error.replace(log, "").replace(/^:\d*:? */, "").replaceAll(`${logs_folder}/`, "");
-}
-
-function warningsOf(record: LogRecord): string {
-  return record.diagnostics.find((one) => one.severity === "warning")?.text ?? "";
-}
-
 /// Returns whether a question changes nothing but the capacity.
 export function isMeasured(question: Question): boolean {
   return optionsOf({ ...question, capacity_ah: undefined }).length === 0;
-}
-
-/// Returns the charge and the phases of a table of `simulate`.
-export function curveOf(table: Csv, simulation: Simulation): Curve {
-  const time_s = numbers(table, "time_s").map((value) => value ?? 0);
-  const phases: Curve["phases"] = [];
-  texts(table, "phase").forEach((name, i) => {
-    const at = time_s[i] ?? 0;
-    const last = phases[phases.length - 1];
-    if (last?.name === name) last.to = at;
-    else phases.push({ name, from: last?.to ?? at, to: at });
-  });
-  return { time_s, soc: numbers(table, "soc_percent"), compute_w: numbers(table, "compute_w"), phases, simulation };
 }
 
 /// Shows the project's state as it changes.
