@@ -1,18 +1,24 @@
 // Bundles the front end: node web/build.mjs FOLDER writes FOLDER/app.js (one script, without modules) and FOLDER/app.css.
+// With the engine, node web/build.mjs FOLDER flightwatt.wasm, also FOLDER/flightwatt.html, one file with all inside, and
+// FOLDER/site, the same to be served.
 import { build } from "esbuild";
+import { readFile } from "node:fs/promises";
+import path from "node:path";
 import { fileURLToPath } from "node:url";
+import { writePages } from "./pages.mjs";
+import { workerText } from "./worker_text.mjs";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
-const folder = process.argv[2];
-if (!folder || process.argv.length > 3) {
-  console.error("build.mjs: error: expected the folder for app.js and app.css: node web/build.mjs FOLDER");
+const [folder, module] = process.argv.slice(2);
+if (!folder || process.argv.length > 4) {
+  console.error("build.mjs: error: expected the folder for app.js and app.css: node web/build.mjs FOLDER [flightwatt.wasm]");
   process.exit(2);
 }
 try {
   await build({
     absWorkingDir: here,
     entryPoints: { app: "app/src/main.tsx" },
-    outdir: fileURLToPath(new URL(folder + "/", `file://${process.cwd()}/`)),
+    outdir: path.resolve(folder),
     bundle: true,
     minify: true,
     format: "iife",
@@ -20,9 +26,11 @@ try {
     jsx: "automatic",
     jsxImportSource: "preact",
     loader: { ".png": "empty" },  // Leaflet's marker pictures, which are not used
+    plugins: [workerText],
     legalComments: "eof",
     logLevel: "warning",
   });
 } catch {
   process.exit(1);  // esbuild has printed why
 }
+if (module) await writePages(path.resolve(folder), await readFile(module));

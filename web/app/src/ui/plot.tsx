@@ -31,7 +31,8 @@ interface PlotProps {
   x_range?: [number, number];
   /// Where the cursor is moved to: a value of x.
   at?: number | null;
-  /// Vertical stripes, as phases of a flight: from, to, colour.
+  /// Stripes, as phases of a flight: over the height, or with `strip` at the foot alone.
+  strip?: boolean;
   stripes?: { from: number; to: number; colour: string }[];
   /// Words at places of the plot.
   labels?: { x: number; y: number; text: string; colour: string; align?: CanvasTextAlign }[];
@@ -89,8 +90,27 @@ function options(props: PlotProps, width: number): uPlot.Options {
         (plot) => {
           for (const stripe of props.stripes ?? []) {
             const left = plot.valToPos(stripe.from, "x", true);
-            plot.ctx.fillStyle = `${colour(stripe.colour)}1f`;
-            plot.ctx.fillRect(left, plot.bbox.top, plot.valToPos(stripe.to, "x", true) - left, plot.bbox.height);
+            const width = plot.valToPos(stripe.to, "x", true) - left;
+            const height = props.strip ? 6 * devicePixelRatio : plot.bbox.height;
+            plot.ctx.fillStyle = `${colour(stripe.colour)}${props.strip ? "" : "1f"}`;
+            plot.ctx.fillRect(left, plot.bbox.top + plot.bbox.height - height, width, height);
+          }
+        },
+      ],
+      draw: [
+        (plot) => {
+          const { ctx } = plot;
+          ctx.font = `600 ${12 * devicePixelRatio}px system-ui, sans-serif`;
+          for (const { x, y, text, colour: name, align = "left" } of props.labels ?? []) {
+            ctx.textAlign = align;
+            ctx.textBaseline = "bottom";
+            ctx.lineJoin = "round";
+            ctx.lineWidth = 4 * devicePixelRatio;
+            ctx.strokeStyle = colour("card");
+            ctx.fillStyle = colour(name);
+            const [left, top] = [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
+            ctx.strokeText(text, left, top);
+            ctx.fillText(text, left, top);
           }
         },
       ],

@@ -33,6 +33,7 @@ export function Slider(props: SliderProps) {
         max={props.max}
         step={props.step}
         value={props.value}
+        style={{ "--part": `${(100 * (props.value - props.min)) / (props.max - props.min)}%` }}
         onInput={(event) => props.onChange(event.currentTarget.valueAsNumber)}
       />
       {props.hint && <span class="soft">{props.hint}</span>}

@@ -1,0 +1,428 @@
+// The logs of this visit, what the engine found in them, and the answers. Screens show its state.
+import { useEffect, useState } from "preact/hooks";
+import type { Engine, RunResult } from "../engine/engine";
+import { naturally } from "../ui/format";
+import { aircraftOf, linesOf, type BatchFound } from "./batch_lines";
+import { numbers, parseCsv, track, type Csv } from "./csv";
+import { curveOf } from "./curve";
+import type { Answer, Batch, FlownFlight, LogRecord, Manifest, Simulation } from "./documents";
+import { freePath, kindOf, safePath, type Dropped } from "./files";
+import * as storage from "./keep";
+import { optionsOf, type Question } from "./question";
+import { WorkQueue } from "./queue";
+import { logs_folder, type Aircraft, type Answered, type Curve, type LogLine, type State } from "./state";
+
+export type { Aircraft, Answered, Curve, LogLine, State } from "./state";
+
+/// The program's exit code where it refused a file.
+const input_rejected = 3;
+const plans_folder = "plans";
+const missions_folder = "missions";
+const out_folder = "out";
+const settings_name = "settings.json";
+/// Answers quicker than this leave time for those of the sliders' steps.
+const quick_s = 0.5;
+const kept_files = /\.(json|toml|csv)$/;
+
+const decoder = new TextDecoder();
+const names = (path: string) => path.split("/").pop() ?? path;
+
+/// Returns what a run printed as errors, without the program's name.
+export function errorsOf(result: RunResult): string {
+  const lines = result.err.split("\n").filter((line) => /: error: /.test(line));
+  return lines.map((line) => line.replace(/^flightwatt[\w-]*: error: /, "").replaceAll(`${logs_folder}/`, "")).join("\n") ||
+    result.err.trim().split("\n").pop() || `it ended with code ${result.code}`;
+}
+
+export class Project {
+  state: State = {
+    ready: false, failed: "", aircraft: [], chosen: "", unused: [], waiting: [], plans: [], progress: null, read_s: null, busy: false,
+  };
+  private listeners = new Set<() => void>();
+  private readonly queue = new WorkQueue((error) => this.set({ failed: error.message, progress: null }), () => this.set({ busy: false }));
+  private files = new Map<string, File | Blob>();
+  private wanted = new Map<string, Question>();
+  /// The question whose pack and mission are in an aircraft's folder.
+  private written = new Map<string, string>();
+  private settings: { chosen?: string; questions?: Record<string, Question> } = {};
+
+  constructor(readonly engine: Engine) {}
+
+  // --- state
+
+  listen(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  private set(change: Partial<State>) {
+    this.state = { ...this.state, ...change };
+    for (const listener of this.listeners) listener();
+  }
+
+  private setAircraft(id: string, change: Partial<Aircraft>) {
+    this.set({ aircraft: this.state.aircraft.map((one) => (one.id === id ? { ...one, ...change } : one)) });
+  }
+
+  aircraft(id = this.state.chosen): Aircraft | undefined {
+    return this.state.aircraft.find((one) => one.id === id) ?? this.state.aircraft[0];
+  }
+
+  choose(id: string) {
+    this.set({ chosen: id });
+    this.settings.chosen = id;
+    this.keepSettings();
+    const aircraft = this.aircraft();
+    if (aircraft && !aircraft.now) this.ask(aircraft.id, aircraft.question);
+  }
+
+  // --- work
+
+  /// Runs the program when it is free.
+  run(args: string[], is_urgent = true): Promise<RunResult> {
+    return this.queue.result(() => this.engine.run(args), is_urgent);
+  }
+
+  async text(path: string): Promise<string> {
+    return decoder.decode(await this.engine.read(path));
+  }
+
+  async json<T>(path: string): Promise<T> {
+    return JSON.parse(await this.text(path)) as T;
+  }
+
+  // --- files
+
+  /// Brings back what this browser kept.
+  async start() {
+    const kept = await storage.kept();
+    const settings = kept.get(settings_name);
+    if (settings) this.settings = JSON.parse(await settings.text());
+    kept.delete(settings_name);
+    for (const [path, data] of kept) {
+      await this.engine.write(path, data instanceof File ? data : new File([data], names(path)));
+      if (!path.startsWith(`${out_folder}/`)) this.files.set(path, data);
+    }
+    this.set({ ready: true, plans: await this.plans() });
+    if (this.logs().length > 0) this.queue.add(() => this.readLogs(), true);
+  }
+
+  private pathsOf(folder: string): string[] {
+    return [...this.files.keys()].filter((path) => path.startsWith(`${folder}/`)).sort(naturally);
+  }
+
+  /// Plans, and missions among the files that came with them.
+  private async plans(): Promise<string[]> {
+    const paths = this.pathsOf(missions_folder);
+    const missions = await missionsAmong(paths.map((path) => ({ path, file: this.files.get(path) as File })));
+    return [...this.pathsOf(plans_folder), ...missions];
+  }
+
+  private logs(): string[] {
+    const paths = this.pathsOf(logs_folder);
+    const known = new Set(paths);
+    return paths.filter((path) => kindOf(path, known) === "log");
+  }
+
+  /// Takes files in; returns the paths of plans among them.
+  async add(dropped: Dropped[]): Promise<string[]> {
+    const stored = new Map<string, Blob>();
+    const missions = await missionsAmong(dropped);
+    const incoming = new Set(dropped.map((one) => safePath(one.path)));
+    for (const { path, file } of dropped) {
+      const safe = safePath(path);
+      // A mission names its files, which stay beside it.
+      const kind = missions.size > 0 ? "mission" : kindOf(safe, incoming);
+      if (kind === "ignored") continue;
+      const wanted = kind === "mission" ? `${missions_folder}/${safe}` : kind === "plan" ? `${plans_folder}/${names(safe)}` : `${logs_folder}/${safe}`;
+      if (this.isSame(wanted, file)) continue;
+      const folder = wanted.slice(0, wanted.indexOf("/") + 1);
+      const place = kind === "plan" || kind === "mission" ? wanted : folder + freePath(wanted.slice(folder.length), (one) => this.files.has(folder + one));
+      await this.engine.write(place, file);
+      this.files.set(place, file);
+      stored.set(place, file);
+    }
+    const plans = [...stored.keys()].filter((path) => !path.startsWith(`${logs_folder}/`));
+    this.set({ failed: "", plans: await this.plans() });
+    if (stored.size > plans.length) this.queue.add(() => this.readLogs(), true);
+    storage.keep(stored).catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
+    return plans;
+  }
+
+  private isSame(path: string, file: File): boolean {
+    const old = this.files.get(path);
+    return old instanceof File && old.size === file.size && old.lastModified === file.lastModified;
+  }
+
+  /// Keeps a file of this page, such as a drawn area.
+  async write(path: string, text: string, is_kept = false) {
+    const file = new File([text], names(path));
+    await this.engine.write(path, file);
+    if (!is_kept) return;
+    this.files.set(path, file);
+    this.set({ plans: await this.plans() });
+    await storage.keep(new Map([[path, file]])).catch(() => undefined);
+  }
+
+  async forgetAll() {
+    this.cancel();
+    await storage.forget().catch(() => undefined);
+    location.hash = "";
+    location.reload();
+  }
+
+  cancel() {
+    this.queue.clear();
+    this.wanted.clear();
+    this.engine.cancel();
+    this.set({ progress: null, busy: false });
+  }
+
+  private keepSettings() {
+    const blob = new Blob([JSON.stringify(this.settings)]);
+    storage.keep(new Map([[settings_name, blob]])).catch(() => undefined);
+  }
+
+  private async keepResults() {
+    const results = new Map<string, Blob>();
+    for (const path of (await this.engine.list()).map((file) => file.path.replace(/^\//, "")))
+      if (path.startsWith(`${out_folder}/`) && kept_files.test(path))
+        results.set(path, new Blob([(await this.engine.read(path)) as BlobPart]));
+    await storage.keep(results).catch(() => undefined);
+  }
+
+  // --- reading logs
+
+  batchArguments(): string[] {
+    const maps = this.pathsOf(logs_folder).filter((path) => kindOf(path, new Set()) === "columns");
+    const columns = maps[0] ? ["--columns", maps[0]] : [];
+    return ["batch", ...this.logs(), "--each", "--prune", "-o", out_folder, "--json", ...columns];
+  }
+
+  private async readLogs() {
+    const paths = this.logs();
+    const started = performance.now();
+    const waiting = paths.map((path): LogLine => ({ path, bytes: this.files.get(path)?.size ?? 0, state: "waiting", reason: "", flight: "" }));
+    this.set({ waiting, progress: { text: "Reading", done: 0, of: paths.length }, busy: true, failed: "" });
+    const result = await this.engine.run(this.batchArguments(), (line) => {
+      const found = /\[(\d+)\/(\d+)\] (.*)$/.exec(line);
+      if (found) this.set({ progress: { text: `Reading ${found[3]}`, done: Number(found[1]), of: Number(found[2]) } });
+    });
+    const batch = result.out ? (JSON.parse(result.out) as Batch) : await this.refusedBatch(result);
+    await this.showBatch(batch, waiting);
+    this.set({ waiting: [], progress: null, read_s: (performance.now() - started) / 1000 });
+    const first = this.aircraft();
+    if (first) this.ask(first.id, first.question);
+    for (const one of this.state.aircraft) this.queue.add(() => this.readTrends(one.id), false);
+    // After the small drawings of all flights.
+    this.queue.add(async () => {
+      for (const one of this.state.aircraft)
+        if (one.id !== first?.id) this.queue.add(() => this.answer(one.id, one.question), false);
+      this.queue.add(() => this.keepResults(), false);
+    }, false);
+  }
+
+  /// A batch without a flight prints no JSON; its folder has the reasons.
+  private async refusedBatch(result: RunResult): Promise<Batch> {
+    if (result.code !== input_rejected) throw new Error(errorsOf(result));
+    const { flights } = await this.json<Manifest>(`${out_folder}/batch.json`);
+    const records = flights.map(({ flight }) => this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`));
+    const logs = (await Promise.all(records)).map(({ accepted, error }, i) => ({ flight: flights[i]?.flight ?? "", accepted, error }));
+    return { aircraft: [], logs };
+  }
+
+  private async readFound(batch: Batch): Promise<BatchFound> {
+    const manifest = await this.json<Manifest>(`${out_folder}/batch.json`);
+    const records = new Map<string, LogRecord>();
+    for (const { flight, accepted } of batch.logs)
+      if (accepted) records.set(flight, await this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`));
+    return { batch, manifest, records };
+  }
+
+  private async showBatch(batch: Batch, waiting: LogLine[]) {
+    const found = await this.readFound(batch);
+    const lines = linesOf(found, waiting);
+    const questionOf = (id: string) => this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
+    const aircraft = aircraftOf(found, lines, questionOf);
+    const unused = lines.filter(({ line }) => line.state === "not").map(({ line }) => line);
+    this.set({ unused, aircraft });
+    if (aircraft.some((one) => one.id === this.state.chosen)) return;
+    const kept = aircraft.find((one) => one.id === this.settings.chosen);
+    this.set({ chosen: (kept ?? aircraft[0])?.id ?? "" });
+  }
+
+  private async readTrends(id: string) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    if (!aircraft) return;
+    const result = await this.engine.run(["trends", aircraft.folder, "--json", "--quiet"]);
+    const flights = result.out ? (JSON.parse(result.out) as { flights: FlownFlight[] }).flights : [];
+    const by_name = new Map(flights.map((flight) => [flight.flight, flight]));
+    this.setAircraft(id, { logs: aircraft.logs.map((line) => ({ ...line, flown: by_name.get(line.flight) })) });
+    for (const line of aircraft.logs) this.queue.addNext(() => this.readPower(id, line));
+  }
+
+  private async readPower(id: string, line: LogLine) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    if (!aircraft) return;
+    const power = await this.powerOf(aircraft.folder, line.flight);
+    const now = this.state.aircraft.find((one) => one.id === id) ?? aircraft;
+    this.setAircraft(id, { logs: now.logs.map((one) => (one.path === line.path ? { ...one, power } : one)) });
+  }
+
+  /// Returns some of the samples of power, enough for a small drawing.
+  private async powerOf(folder: string, flight: string): Promise<number[]> {
+    const { y } = track(await this.series(folder, flight), "power_w");
+    const samples = 150;
+    return y.length <= samples ? y : Array.from({ length: samples }, (_, i) => y[Math.floor((i * y.length) / samples)] ?? 0);
+  }
+
+  async series(folder: string, flight: string): Promise<Csv> {
+    return parseCsv(await this.text(`${folder}/flights/${flight}.series.csv`));
+  }
+
+  // --- answers
+
+  /// Asks; while an answer is under way, the latest question alone is next.
+  ask(id: string, question: Question) {
+    this.setAircraft(id, { question });
+    this.settings.questions = { ...this.settings.questions, [id]: question };
+    this.keepSettings();
+    const is_waiting = this.wanted.has(id);
+    this.wanted.set(id, question);
+    this.set({ busy: true });
+    if (is_waiting) return;
+    this.queue.add(async () => {
+      const latest = this.wanted.get(id);
+      this.wanted.delete(id);
+      if (latest) await this.answer(id, latest);
+    }, true);
+  }
+
+  isAsking(id: string): boolean {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    return aircraft != null && !aircraft.failed && JSON.stringify(aircraft.question) !== JSON.stringify(aircraft.now?.question);
+  }
+
+  answerArguments(aircraft: Aircraft, question: Question): string[] {
+    return ["answer", ...aircraft.logs.map((line) => line.path), ...optionsOf(question), "-o", aircraft.folder, "--no-page", "--json", "--quiet"];
+  }
+
+  private async answer(id: string, question: Question) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    if (!aircraft) return;
+    const is_base = isMeasured(question);
+    const base = aircraft.measured?.question;
+    if (!is_base && (!base || base.capacity_ah !== question.capacity_ah)) {
+      const measured = await this.answered(aircraft, question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {});
+      this.setAircraft(id, { measured: typeof measured === "string" ? undefined : measured, hints: {} });
+    }
+    const now = await this.answered(aircraft, question);
+    if (typeof now === "string") this.setAircraft(id, { failed: now });
+    else this.setAircraft(id, is_base ? { measured: now, now, failed: undefined, hints: {} } : { now, failed: undefined });
+    if (is_base && typeof now !== "string" && now.seconds < quick_s) this.queue.add(() => this.hints(id), false);
+  }
+
+  /// Answers for a step of each slider, one after the other, while nobody waits.
+  private async hints(id: string) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    const measured = aircraft?.measured;
+    if (!aircraft || !measured) return;
+    const [name, step] = stepsFrom(measured).find(([one]) => !(one in aircraft.hints)) ?? [];
+    if (!name || !step) return;
+    const found = await this.answered(aircraft, { ...measured.question, ...step });
+    const now = this.state.aircraft.find((one) => one.id === id);
+    if (now?.measured !== measured) return;
+    this.setAircraft(id, { hints: { ...now.hints, [name]: typeof found === "string" ? null : found } });
+    this.queue.add(() => this.hints(id), false);
+  }
+
+  /// Does work with the engine on the files of an aircraft's answer.
+  withAnswer<T>(id: string, answered: Answered, use: (engine: Engine) => Promise<T>): Promise<T> {
+    return this.queue.result(async () => {
+      const aircraft = this.state.aircraft.find((one) => one.id === id);
+      const is_written = this.written.get(id) === JSON.stringify(answered.question);
+      if (aircraft && !is_written) await this.answered(aircraft, answered.question);
+      return use(this.engine);
+    }, true);
+  }
+
+  /// Runs the program on the files of an answer; what-if may have left those of another question.
+  runOnAnswer(id: string, answered: Answered, args: string[]): Promise<RunResult> {
+    return this.withAnswer(id, answered, (engine) => engine.run(args));
+  }
+
+  /// Returns an answer, or why there is none.
+  async answered(aircraft: Aircraft, question: Question): Promise<Answered | string> {
+    const started = performance.now();
+    this.written.set(aircraft.id, JSON.stringify(question));
+    const result = await this.engine.run(this.answerArguments(aircraft, question));
+    if (!result.out) return errorsOf(result);
+    const answer = (JSON.parse(result.out) as { aircraft: Answer[] }).aircraft[0];
+    if (!answer) return errorsOf(result);
+    if (answer.no_answer) return answer.no_answer;
+    const curve = answer.time_in_air_s.value != null ? await this.curve(`${aircraft.folder}/answer-mission.toml`) : null;
+    return { question, answer, curve, seconds: (performance.now() - started) / 1000 };
+  }
+
+  /// Returns the charge over a mission, with a band where flights differ.
+  async curve(mission: string): Promise<Curve | null> {
+    const found = await this.curveOrError(mission);
+    return typeof found === "string" ? null : found;
+  }
+
+  async curveOrError(mission: string): Promise<Curve | string> {
+    const [csv, band] = ["curve.csv", "band.csv"];
+    const result = await this.engine.run(
+      ["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv, "--samples", "400", "--samples-csv", band]);
+    const final = result.out ? result : await this.engine.run(["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv]);
+    if (!final.out) return errorsOf(final);
+    const simulation = JSON.parse(final.out) as Simulation;
+    const curve = curveOf(parseCsv(await this.text(csv)), simulation);
+    if (result.out && simulation.probability_below_reserve != null) {
+      const table = parseCsv(await this.text(band));
+      curve.band = {
+        time_s: numbers(table, "time_s").map((value) => value ?? 0),
+        low: numbers(table, "soc_p05_percent"),
+        high: numbers(table, "soc_p95_percent"),
+      };
+    }
+    return curve;
+  }
+}
+
+/// Returns a step of each slider from an answer.
+function stepsFrom({ answer }: Answered): [string, Question][] {
+  const capacity = answer.capacity_ah.value;
+  const fastest = answer.best_speeds.find((one) => /range/.test(one.purpose))?.airspeed_m_per_s;
+  return [
+    ["reserve", { reserve: answer.reserve_soc_percent + 5 }],
+    ["payload", { payload_kg: 0.5 }],
+    ["wind", { wind: 4 }],
+    ...(fastest ? [["airspeed", { airspeed: Math.round(2 * fastest) / 2 }] as [string, Question]] : []),
+    ...(capacity ? [["capacity", { capacity_ah: Math.round(capacity) + 1 }] as [string, Question]] : []),
+    ["temperature", { temperature: 0 }],
+  ];
+}
+
+/// Returns the paths of mission files.
+async function missionsAmong(files: Dropped[]): Promise<Set<string>> {
+  const found = new Set<string>();
+  for (const { path, file } of files)
+    if (/\.toml$/i.test(path) && /^\s*mechanical\s*=/m.test(await file.slice(0, 20_000).text())) found.add(path);
+  return found;
+}
+
+/// Returns whether a question changes nothing but the capacity.
+export function isMeasured(question: Question): boolean {
+  return optionsOf({ ...question, capacity_ah: undefined }).length === 0;
+}
+
+/// Shows the project's state as it changes.
+export function useProject(project: Project): State {
+  const [state, setState] = useState(project.state);
+  useEffect(() => {
+    setState(project.state);
+    return project.listen(() => setState(project.state));
+  }, [project]);
+  return state;
+}

@@ -1,0 +1,76 @@
+// What is asked of an aircraft, and the commands that answer it.
+import type { Answer } from "./documents";
+
+/// The options of `flightwatt answer` that the sliders set; absent is "as measured".
+export interface Question {
+  capacity_ah?: number;
+  reserve?: number;
+  payload_kg?: number;
+  mass_kg?: number;
+  wind?: number;
+  airspeed?: number;
+  temperature?: number;
+  home_m?: number;
+}
+
+/// Returns the options of a question.
+export function optionsOf(question: Question): string[] {
+  const options: string[] = [];
+  const add = (name: string, value: number | undefined) => {
+    if (value != null) options.push(`--${name}`, String(value));
+  };
+  add("capacity", question.capacity_ah);
+  add("reserve", question.reserve);
+  add("payload", question.payload_kg);
+  if (question.payload_kg != null) add("mass", question.mass_kg);
+  add("wind", question.wind);
+  add("airspeed", question.airspeed);
+  add("temperature", question.temperature);
+  add("home-distance", question.home_m);
+  return options;
+}
+
+/// Returns the options of a battery failsafe for the answer to a question.
+export function failsafeOptions(question: Question, answer: Answer): string[] {
+  const home_m = question.home_m ?? answer.failsafe?.home_distance_m;
+  const airspeed = answer.return_airspeed_m_per_s.value;
+  return [
+    ...(home_m != null ? ["--home-distance", String(home_m)] : []),
+    ...(airspeed != null ? ["--airspeed", String(airspeed)] : []),
+    ...(question.wind ? ["--wind", String(question.wind)] : []),
+  ];
+}
+
+/// Returns what is asked beyond the flights as they were: "With 0.5 kg, in 4 m/s of wind".
+export function asWords(question: Question): string {
+  const parts = [
+    question.payload_kg != null ? `with ${question.payload_kg} kg` : "",
+    question.wind ? `in ${question.wind} m/s of wind` : "",
+    question.airspeed != null ? `at ${question.airspeed} m/s` : "",
+    question.temperature != null ? `at ${question.temperature} °C` : "",
+  ];
+  return parts.filter(Boolean).join(", ");
+}
+
+/// Returns a text of the program with its options named as this page does.
+export function inPageWords(text: string): string {
+  return text
+    .replace(/--capacity AH/g, "the capacity of the pack")
+    .replace(/\(option --mass\)/g, "(the mass below the slider Payload)")
+    .replace(/--airspeed/g, "the slider Airspeed")
+    .replace(/--home-distance/g, "the distance from home")
+    .replace(/--payload/g, "the slider Payload");
+}
+
+/// Returns a text as a shell takes it.
+export function quoted(text: string): string {
+  return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
+}
+
+const by_folder = 4;
+
+/// Returns logs as a command line has them: by name, or where they are many their folder.
+export function logsShown(logs: string[]): string {
+  if (logs.length > by_folder) return "LOGS";
+  return logs.map((log) => quoted(log.replace(/^logs\//, "").replace(/^-/, "./-"))).join(" ");
+}

@@ -1,0 +1,198 @@
+// The page that reads logs, in Chromium from a file and without a network: node --test web/app/test/
+// FLIGHTWATT is the program that the page's engine is then, FLIGHTWATT_PAGE a flightwatt.html with its own; CHROMIUM the browser.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync } from "node:fs";
+import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+import { giveNativeEngine } from "./native_engine.mjs";
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const logs = path.resolve(here, "../../../logs");
+const program = process.env.FLIGHTWATT;
+const page_file = process.env.FLIGHTWATT_PAGE;
+const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const skip = (program || page_file) && existsSync(executablePath) ? false : "neither FLIGHTWATT nor FLIGHTWATT_PAGE, or no browser";
+const patience = { timeout: 120_000 };
+
+let browser;
+let folder;
+let address;
+
+before(async () => {
+  if (skip) return;
+  browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu"] });
+  folder = await mkdtemp(path.join(os.tmpdir(), "flightwatt-page-"));
+  address = page_file ? pathToFileURL(path.resolve(page_file)).href : await plainPage();
+});
+after(async () => {
+  await browser?.close();
+  if (folder) await rm(folder, { recursive: true, force: true });
+});
+
+/// The bundle alone, whose engine is given to it.
+async function plainPage() {
+  execFileSync("node", [path.resolve(here, "../../build.mjs"), folder]);
+  const file = path.join(folder, "page.html");
+  await writeFile(file, '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>FlightWatt</title><link rel="stylesheet" href="app.css"><div id="app"></div><script src="app.js"></script>');
+  return pathToFileURL(file).href;
+}
+
+/// Opens the page; anything that it fetches, or any error of it, fails the test.
+async function open(t, { width = 1440, height = 900, scheme = "light" } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, offline: true });
+  t.after(() => context.close());
+  const page = await context.newPage();
+  page.on("pageerror", (error) => assert.fail(error));
+  page.on("request", (request) => assert.match(request.url(), /^(file|blob|data):/));
+  if (!page_file) await giveNativeEngine(page, program);
+  await page.goto(address);
+  await page.waitForSelector("h1");
+  return page;
+}
+
+const named = (name, buffer) => ({ name, mimeType: "application/octet-stream", buffer });
+const sample = (number) => ["data", "log"].map((ending) => path.join(logs, `opterra_synthetic_0${number}.${ending}`));
+const choose = (page, files, label = "Choose files") => page.setInputFiles(`input[aria-label="${label}"]`, files);
+
+async function dropThree(page) {
+  await choose(page, [1, 2, 3].flatMap(sample));
+  await page.waitForSelector(".log.used", patience);
+}
+
+/// The sample logs do not state their pack.
+async function showAnswer(page) {
+  await page.click('nav a[href="#answer"]');
+  await page.fill("#asked-capacity", "3.2", patience);
+  await page.click(".asked button");
+  await page.waitForSelector(".figures .figure-value b", patience);
+}
+
+async function violations(page) {
+  await page.evaluate(await readFile(path.resolve(here, "../../node_modules/axe-core/axe.min.js"), "utf8"));
+  const { violations: found } = await page.evaluate(() => globalThis.axe.run());
+  return found.map((one) => `${one.id}: ${one.nodes.map((node) => node.html.slice(0, 160)).join(" | ")}`);
+}
+
+test("three logs become one aircraft, a line each, and an answer with its chance", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  const started = performance.now();
+  await dropThree(page);
+  assert.equal(await page.locator(".log.used").count(), 3);
+  await showAnswer(page);
+  t.diagnostic(`${((performance.now() - started) / 1000).toFixed(1)} s to the answer`);
+  assert.match(await page.textContent("h1"), /^A full pack lasts \d/);
+});
+
+test("a log that is refused has its reason", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await choose(page, [named("holiday.jpg", Buffer.from("no log at all\n"))]);
+  await page.waitForSelector(".log.not", patience);
+  assert.match(await page.textContent(".log.not .log-reason"), /telemetry/);
+});
+
+test("hostile names are shown and stay names", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  const data = await readFile(sample(1)[0]);
+  const definitions = await readFile(sample(1)[1]);
+  const hostile = "<img src=x onerror=\"document.title='owned'\">";
+  await choose(page, [
+    named(`${hostile}.data`, data), named(`${hostile}.log`, definitions), named("-o.bin", Buffer.from("x")),
+    named("日本\u202ebin.data", Buffer.from("x")), named(`${"n".repeat(240)}.bin`, Buffer.from("x")),
+  ]);
+  await page.waitForSelector(".log.used", patience);
+  assert.equal(await page.locator("main img").count(), 0);
+  assert.equal(await page.title(), "FlightWatt");
+  assert.equal(await page.locator(".log.not").count(), 3);
+});
+
+test("a slider asks anew, keeps the old answer in sight, and takes it back", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  const before_move = await page.textContent(".figures .figure-value");
+  await page.locator('input[aria-label="Reserve"]').fill("40");
+  await page.waitForFunction(() => /less/.test(document.querySelector(".figures")?.textContent ?? ""), null, patience);
+  assert.notEqual(await page.textContent(".figures .figure-value"), before_move);
+  assert.match(await page.textContent(".command code"), /--reserve 40/);
+  await page.click("text=As measured");
+  await page.waitForFunction((text) => document.querySelector(".figures .figure-value")?.textContent === text, before_move, patience);
+});
+
+test("an area is flown, and has a verdict with its command", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  const corners = [[1.48, 43.56], [1.49, 43.56], [1.49, 43.565], [1.48, 43.565], [1.48, 43.56]];
+  const area = JSON.stringify({ type: "Feature", properties: {}, geometry: { type: "Polygon", coordinates: [corners] } });
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [{ name: "field.geojson", mimeType: "application/json", buffer: Buffer.from(area) }], "Choose a plan");
+  await page.waitForSelector(".verdict-band, [role=alert]", patience);
+  assert.equal(await page.locator("[role=alert]").count(), 0, await page.locator("[role=alert]").allTextContents().then(String));
+  assert.match(await page.textContent(".command code"), /new-mission .*--plan field.geojson/);
+});
+
+test("the second visit has the logs, and Forget all has none", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.reload();
+  await page.click('nav a[href="#logs"]');
+  await page.waitForSelector(".log.used", patience);
+  assert.equal(await page.locator(".log.used").count(), 3);
+  await page.click("text=Forget all");
+  await page.waitForSelector(".empty", patience);
+  await page.reload();
+  await page.waitForSelector(".empty", patience);
+});
+
+test("everything is reached by the keyboard", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  const dialog = page.waitForEvent("filechooser", patience);
+  const tabTo = async (name) => {
+    for (let i = 0; i < 60; i += 1) {
+      await page.keyboard.press("Tab");
+      const focused = await page.evaluate(() => document.activeElement?.getAttribute("aria-label") || document.activeElement?.textContent?.trim());
+      if (focused === name) return;
+    }
+    assert.fail(`the keyboard does not reach ${name}`);
+  };
+  await tabTo("Choose files");
+  await page.keyboard.press("Enter");
+  await (await dialog).setFiles([1, 2, 3].flatMap(sample));
+  await page.waitForSelector(".log.used", patience);
+  await tabTo("Answer for Opterra_synthetic");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#asked-capacity", patience);
+  await page.focus("#asked-capacity");
+  await page.keyboard.type("3.2");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".figures .figure-value b", patience);
+  await tabTo("Reserve");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => /--reserve 21/.test(document.querySelector(".command code")?.textContent ?? ""), null, patience);
+});
+
+for (const scheme of ["light", "dark"])
+  test(`no screen has a fault that axe finds, and none is wider than a phone: ${scheme}`, { skip, timeout: 240_000 }, async (t) => {
+    const page = await open(t, { width: 390, height: 844, scheme });
+    const check = async (name) => {
+      await page.waitForFunction(() => !document.querySelector("[aria-busy=true]"), null, patience);
+      assert.deepEqual(await violations(page), [], name);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name} is wider than 390 px`);
+    };
+    await check("empty");
+    await dropThree(page);
+    await check("logs");
+    await showAnswer(page);
+    await page.waitForSelector(".parameters", patience);
+    await check("answer");
+    await page.click('nav a[href="#flights"]');
+    await page.waitForSelector(".flight-plot", patience);
+    await check("flights");
+    await page.click('nav a[href="#plan"]');
+    await check("plan");
+  });

@@ -1,0 +1,72 @@
+// Names of files, tables and plans as the page reads them.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { bundled } from "../../bundled.mjs";
+
+const files = await bundled("work/files.ts");
+const csv = await bundled("work/csv.ts");
+const shapes = await bundled("work/plan_shapes.ts");
+const question = await bundled("work/question.ts");
+
+test("a path never leads out of its folder", () => {
+  assert.equal(files.safePath("../../etc/passwd"), "etc/passwd");
+  assert.equal(files.safePath("..\\..\\boot.ini"), "boot.ini");
+  assert.equal(files.safePath("/a/./b//c.bin"), "a/b/c.bin");
+  assert.equal(files.safePath(".."), "unnamed");
+});
+
+test("a name has no control characters and no marks that turn its direction", () => {
+  assert.equal(files.safePath("fl\u0000ight\n\u202egpj.bin"), "fl_ight__gpj.bin");
+});
+
+test("a long name keeps its ending", () => {
+  const name = files.safePath(`${"ä".repeat(500)}.data.gz`);
+  assert.ok([...name].length <= 100 && name.endsWith(".data.gz"));
+});
+
+test("the same name twice has a folder of its own", () => {
+  const taken = new Set(["a.bin", "2/a.bin"]);
+  assert.equal(files.freePath("a.bin", (path) => taken.has(path)), "3/a.bin");
+  assert.equal(files.freePath("b.bin", (path) => taken.has(path)), "b.bin");
+});
+
+test("a .log beside its .data has definitions; alone it is a log", () => {
+  const names = new Set(["x/a.data", "x/a.log"]);
+  assert.equal(files.kindOf("x/a.log", names), "definitions");
+  assert.equal(files.kindOf("x/b.log", names), "log");
+  assert.equal(files.kindOf("survey.KML", names), "plan");
+  assert.equal(files.kindOf("photo.jpg", names), "log");
+  assert.equal(files.kindOf(".DS_Store", names), "ignored");
+});
+
+test("a table has comments, quotes and empty cells", () => {
+  const table = csv.parseCsv('# format = 1\ntime_s,leg,power_w\n0,"a, ""b""",1.5\n1,c,\n');
+  assert.deepEqual(csv.texts(table, "leg"), ['a, "b"', "c"]);
+  assert.deepEqual(csv.numbers(table, "power_w"), [1.5, null]);
+  assert.deepEqual(csv.track(table, "power_w"), { x: [0], y: [1.5] });
+  assert.deepEqual(csv.numbers(table, "none"), []);
+});
+
+test("an area that is drawn is an area when it is read", () => {
+  const corners = [[48, 11], [48.01, 11], [48.01, 11.02]];
+  assert.deepEqual(shapes.shapeOf("a.geojson", shapes.areaFile(corners)).areas, [[...corners, corners[0]]]);
+});
+
+test("a file that is no plan has no places", () => {
+  assert.deepEqual(shapes.shapeOf("a.plan", "no JSON"), { lines: [], areas: [], named: [] });
+});
+
+test("waypoints without a place are not drawn", () => {
+  const text = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t48\t11\t500\t1\n1\t0\t3\t178\t0\t12\t0\t0\t0\t0\t0\t1\n";
+  assert.deepEqual(shapes.shapeOf("a.waypoints", text), { lines: [[[48, 11]]], areas: [], named: [], home: [48, 11] });
+});
+
+test("a question is the options of the program, and nothing is asked by nothing", () => {
+  assert.deepEqual(question.optionsOf({}), []);
+  assert.deepEqual(question.optionsOf({ payload_kg: 0.5, mass_kg: 3.4, wind: 4 }), ["--payload", "0.5", "--mass", "3.4", "--wind", "4"]);
+  assert.deepEqual(question.optionsOf({ mass_kg: 3.4 }), []);
+});
+
+test("a shell takes the names of logs as they are", () => {
+  assert.equal(question.logsShown(["logs/a b.bin", "logs/-rf", "logs/it's"]), `'a b.bin' ./-rf 'it'\\''s'`);
+});
