@@ -114,21 +114,6 @@ function options(props: PlotProps, width: number): uPlot.Options {
           }
         },
       ],
-      draw: [
-        (plot) => {
-          const { ctx } = plot;
-          ctx.font = `600 ${12 * devicePixelRatio}px system-ui, sans-serif`;
-          for (const { x, y, text, colour: name, align = "left" } of props.labels ?? []) {
-            ctx.textAlign = align;
-            ctx.lineWidth = 4 * devicePixelRatio;
-            ctx.strokeStyle = colour("card");
-            ctx.fillStyle = colour(name);
-            const [left, top] = [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
-            ctx.strokeText(text, left, top);
-            ctx.fillText(text, left, top);
-          }
-        },
-      ],
       setCursor: props.onCursor ? [(plot) => props.onCursor?.(plot.cursor.idx ?? null)] : [],
     },
   };
