@@ -8,6 +8,7 @@ const [file, out, width, height] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
 const page = await browser.newPage({ viewport: { width: Number(width), height: Number(height) }, colorScheme: "light" });
 await page.goto(pathToFileURL(path.resolve(file)).href);
-await page.waitForFunction(() => [...window.flightwatt.figures].every((figure) => figure.getBoundingClientRect().top > innerHeight || figure.clientWidth === 0 || figure.dataset.drawn));
+await page.locator("main#main h1").waitFor();
+await page.waitForTimeout(500); // maps and plots
 await page.screenshot({ path: out });
 await browser.close();

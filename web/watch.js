@@ -23,6 +23,8 @@
     return [`${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`, "min"];
   }
   const durationText = (seconds) => duration(seconds).join(" ");
+  // What is over has its seconds: "23:54 min".
+  const wholeDuration = (seconds) => (seconds < 600 ? duration(seconds) : [`${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`, "min"]);
   const phaseNames = { ground: "On the ground", takeoff: "Take-off", cruise: "Cruise", landing: "Landing", landed: "Landed" };
   function runText(configuration) {
     const names = Object.entries(configuration ?? {}).map(([name, quality]) =>
@@ -32,12 +34,17 @@
   const age = () => (state?.time_since_message_s ?? 0) + (arrival === null ? 0 : (Date.now() - arrival) / 1000);
   const isOld = () => state !== null && (!connected || age() >= state.silence_threshold_s);
   const hasLanded = () => state?.phase === "landed";
+  const landedBelow = () => hasLanded() && state.reserve_soc_percent > 0 && isKnown(state.battery?.soc_percent) && state.battery.soc_percent < state.reserve_soc_percent;
 
   // --- status: class of the page, headline, action ---
   function status() {
     const away = "flightwatt watch does not answer";
     if (!state?.aircraft_id) return connected ? ["waiting", "Waiting for an aircraft", ""] : ["silent", "NO CONNECTION", away];
-    if (hasLanded()) return ["landed", "Landed", connected ? landedText() : `${landedText()}. ${away}.`];
+    if (hasLanded()) {
+      const text = `${landedText()}${connected ? "" : ". The watch has ended: these are its last numbers."}`;
+      if (landedBelow()) return ["caution", "Landed below the reserve", `${number(state.battery.soc_percent, 1)} % left, reserve ${number(state.reserve_soc_percent, 0)} %; ${text}`];
+      return ["landed", "Landed", text];
+    }
     if (!connected) return ["silent", `NO CONNECTION for ${durationText(age())}`, `${away}. Numbers are old.`];
     if (isOld()) return ["silent", `NO LINK for ${durationText(age())}`, "Numbers are old. Check antenna and line of sight."];
     const [worst] = state.alarms; // the most severe is first
@@ -57,7 +64,7 @@
     alarm: "M13 3h14l10 10v14L27 37H13L3 27V13ZM20 11v11M20 28v.6", silent: "M4 14a24 24 0 0 1 32 0M10 21a15 15 0 0 1 20 0M20 30v.5M5 36 35 4",
     landed: "M4 33h32M8 12l20 12 6-2", waiting: "M20 3a17 17 0 1 0 .01 0ZM20 11v9l6 5",
   };
-  const landedText = () => `${durationText(state.flight_time_s)} in the air${isKnown(state.energy_wh) ? `, ${number(state.energy_wh, 2)} Wh` : ""}`;
+  const landedText = () => `${wholeDuration(state.flight_time_s).join(" ")} in the air${isKnown(state.energy_wh) ? `, ${number(state.energy_wh, 2)} Wh` : ""}`;
 
   // --- answers: [label, value, unit, note, class]; those without a value are left out ---
   const sentence = (...parts) => parts.filter(Boolean).join(", ");
@@ -80,8 +87,9 @@
     const then = points.find((point) => point.t >= middle && isKnown(point.at_landing));
     const predicted = then && isKnown(state.lift_off_s) ? `predicted after ${durationText(then.t - state.lift_off_s)}: ${number(then.at_landing, 1)} %` : "";
     const soc = state.battery?.soc_percent;
-    return [isKnown(soc) && ["Charge left", number(soc, 1), "%", predicted],
-      isKnown(state.energy_wh) && ["Energy used", number(state.energy_wh, 2), "Wh", ""], ["In the air", ...duration(state.flight_time_s), ""]].filter(Boolean);
+    const reserve = state.reserve_soc_percent > 0 ? `reserve ${number(state.reserve_soc_percent, 0)} %` : "";
+    return [isKnown(soc) && ["Charge left", number(soc, 1), "%", sentence(reserve, predicted)],
+      isKnown(state.energy_wh) && ["Energy used", number(state.energy_wh, 2), "Wh", ""], ["In the air", ...wholeDuration(state.flight_time_s), ""]].filter(Boolean);
   }
   function answers() {
     if (hasLanded()) return landedAnswers();
@@ -102,8 +110,9 @@
       ["Altitude", state.altitude_m, 0, "m"], ["Energy", hasLanded() ? null : state.energy_wh, 2, "Wh"]];
     const list = all.filter(([, value]) => isKnown(value)).map(([label, value, digits, unit]) => [label, `${number(value, digits)} ${unit}`]);
     if (!isKnown(state.power_w) || hasLanded()) return list;
-    const expected = isKnown(state.expected_power_w) ? [", expected", `, ${number(state.expected_power_w, 0)}`] : ["", ""];
-    list.splice(Math.min(3, list.length), 0, [`Power${expected[0]}`, `${number(state.power_w, 0)}${expected[1]} W`]);
+    const power = [["Power", `${number(state.power_w, 0)} W`]];
+    if (isKnown(state.expected_power_w)) power.push(["Expected power", `${number(state.expected_power_w, 0)} W`]);
+    list.splice(Math.min(3, list.length), 0, ...power);
     return list;
   }
 
@@ -126,7 +135,7 @@
     const old = isOld();
     const before = document.body.dataset.kind;
     document.body.dataset.kind = kind;
-    document.body.className = old ? `${kind} old` : kind;
+    document.body.className = [kind, old && !hasLanded() && "old", hasLanded() && "over"].filter(Boolean).join(" ");
     if (palette !== document.body.className) drawSoon();
     element("sign").firstElementChild.setAttribute("d", signs[kind]);
     write("status", headline);
@@ -146,8 +155,9 @@
       return group([node("dt", label), big, ...(oldText || note ? [node("dd", oldText || note, { className: "note" })] : [])], role ? { className: role } : {});
     }));
     const inAir = state.flight_time_s > 0 ? `, ${durationText(state.flight_time_s)} in the air` : "";
-    write("phase", `${phaseNames[state.phase]}${inAir}${state.began_in_air ? " (since the first message)" : ""}`);
-    write("received", age() < 2 ? "received now" : `${old ? "" : "received "}${durationText(age())} ago`);
+    const hasHeard = state.messages > 0;
+    write("phase", !hasHeard ? "Nothing received yet" : `${phaseNames[state.phase]}${inAir}${state.began_in_air ? " (since the first message)" : ""}`);
+    write("received", !hasHeard ? "" : age() < 2 ? "received now" : `${old ? "" : "received "}${durationText(age())} ago`);
     replace("values", values().map(([label, text]) => group([node("dt", label), node("dd", text)])));
     replace("alarms", state.alarms.filter(({ kind: of }) => of !== "silence").map((alarm, i) => {
       const isInBand = i === 0 && alarm.action === action;

@@ -96,6 +96,64 @@ test("charts move while a flight is played, and the page outlives its server", a
   assert.deepEqual(faults, []);
 });
 
+/** Opens the page with events that the test sends, in place of the server's: `send(name, data)`. */
+async function openWithEvents(options) {
+  const page = await (await browser.newContext(options)).newPage();
+  page.setDefaultTimeout(0);
+  await page.addInitScript(() => {
+    window.EventSource = class extends EventTarget {
+      constructor() {
+        super();
+        window.send = (name, data) => this.dispatchEvent(name === "error" ? new Event(name) : new MessageEvent(name, { data: JSON.stringify(data) }));
+      }
+    };
+  });
+  await page.goto(address);
+  return { page, send: (name, data) => page.evaluate(([event, content]) => window.send(event, content), [name, data]) };
+}
+
+const screens = { phone: { width: 390, height: 844 }, desktop: { width: 1440, height: 900 } };
+for (const [name, viewport] of Object.entries(screens))
+  for (const colorScheme of ["light", "dark"])
+    test(`a landing below the reserve is not shown as calm, and nothing collides: ${name}, ${colorScheme}`, async () => {
+      await eventually("the server has a state", async () => (await fetch(`${address}state`).then((answer) => answer.json(), () => null)) != null);
+      const state = await (await fetch(`${address}state`)).json();
+      const { page, send } = await openWithEvents({ viewport, colorScheme });
+      const landed = { ...state, phase: "landed", flight_time_s: 1434, energy_wh: 11.93, reserve_soc_percent: 70, battery: { ...state.battery, soc_percent: 60.2 }, alarms: [], messages: 100 };
+      await send("state", landed);
+      assert.equal(await page.locator("#status").innerText(), "Landed below the reserve");
+      assert.match(await page.locator("#action").innerText(), /60\.2 % left, reserve 70 %; 23:54 min in the air/);
+      assert.match(await page.locator("body").getAttribute("class"), /caution/);
+      const overlap = await page.evaluate(() => {
+        const boxes = [...document.querySelectorAll("#answers .number")].map((number) => {
+          const range = document.createRange();
+          range.selectNodeContents(number);
+          return range.getBoundingClientRect();
+        });
+        const collide = boxes.some((a, i) => boxes.some((b, k) => k > i && a.left < b.right && b.left < a.right && a.top < b.bottom - 1 && b.top < a.bottom - 1));
+        return { collide, outside: document.documentElement.scrollWidth - innerWidth };
+      });
+      await page.screenshot({ path: path.join(SCRATCH, `landed-${name}-${colorScheme}.png`) });
+      assert.deepEqual(overlap, { collide: false, outside: 0 });
+      await send("error");
+      assert.match(await page.locator("#action").innerText(), /The watch has ended: these are its last numbers/);
+      await send("state", { ...landed, reserve_soc_percent: 20 });
+      assert.equal(await page.locator("#status").innerText(), "Landed");
+      await page.evaluate(axe.source);
+      const { violations } = await page.evaluate(() => window.axe.run());
+      assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+      await page.context().close();
+    });
+
+test("before anything was received, no age of it is shown", async () => {
+  const state = await (await fetch(`${address}state`)).json();
+  const { page, send } = await openWithEvents({ viewport: screens.phone });
+  await send("state", { ...state, messages: 0, aircraft_id: null, phase: "ground", time_since_message_s: 21, prediction: null, battery: null, turn_home: null, alarms: [] });
+  assert.equal(await page.locator("#moment").innerText(), "Nothing received yet");
+  assert.equal(await page.locator("#status").innerText(), "Waiting for an aircraft");
+  await page.context().close();
+});
+
 test("no other page and no other name is answered", async () => {
   await eventually("the server answers", answers);
   const page = await (await browser.newContext()).newPage();

@@ -14,7 +14,7 @@ skip() {
     exit 77
 }
 command -v node >/dev/null || skip node
-[[ -d $web/node_modules/playwright-core && -d $web/node_modules/vega ]] || skip web/node_modules
+[[ -d $web/node_modules/playwright-core && -d $web/node_modules/preact ]] || skip web/node_modules
 chromium=$(command -v chromium || command -v chromium-browser) || skip chromium
 
 rm -rf "$pages"
@@ -55,16 +55,14 @@ mission twice 'αβγ ✈ 無人機'
 quiet "$bin/flightwatt-batch" "$pages/hostile" -o "$pages/hostile_out"
 quiet "$bin/flightwatt-report" "$pages/hostile_out" "$pages"/hostile/*.toml --title '<b>"title"</b>' -o "$pages/hostile.html"
 
-# Pages of many flights, which are compressed; figures of the smaller as files: without node, specifications alone.
-mkdir "$pages/empty"
+# Pages of many flights, whose details are compressed.
 many_flights() {
     local count=$1 name=$2
-    shift 2
     quiet "$bin/flightwatt-synthesize" "$source/fits/mechanical/opterra-table1.toml" --flights "$count" --seed 3 -o "$pages/logs"
     quiet "$bin/flightwatt-batch" "$pages/logs" -o "$pages/logs_out"
-    PATH=$pages/empty quiet "$bin/flightwatt-report" "$pages/logs_out" "$source/missions/paper/phased.toml" -o "$pages/$name.html" "$@"
+    quiet "$bin/flightwatt-report" "$pages/logs_out" "$source/missions/paper/phased.toml" -o "$pages/$name.html"
     rm -rf "$pages/logs" "$pages/logs_out"
 }
-many_flights 30 many --figures "$pages/many_figures"
+many_flights 30 many
 many_flights "$flights" more
 browse
