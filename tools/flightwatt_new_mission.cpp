@@ -73,29 +73,6 @@ std::string component_name(const std::filesystem::path& profile, const std::vect
     return name;
 }
 
-/// Chooses the airspeed of a new path: as an option states it, the plan, or the model's flights. What QGroundControl
-/// writes by default counts where the flights flew it: else it is a speed that was never set.
-void choose_airspeed(const NewMissionArguments& arguments, mission::NewMission& fresh) {
-    const auto& planned = fresh.flown->speed;
-    fresh.airspeed_m_per_s = arguments.airspeed_m_per_s;
-    if (fresh.airspeed_m_per_s) return;
-    const auto& [low, high] = fresh.model.physical->airspeed_m_per_s;
-    const bool is_flown = planned && planned->m_per_s >= low && planned->m_per_s <= high;
-    const auto flown =
-        fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", mission::new_airspeed_m_per_s(fresh.model));
-    auto& chosen = fresh.flown->chosen;
-    if (!planned) {
-        chosen.push_back(flown);
-    } else if (planned->is_default && !is_flown) {
-        chosen.push_back(fmt::format("{}, which did not fly the {} m/s of {}; --airspeed states another", flown,
-                                     planned->m_per_s, planned->source));
-    } else {
-        fresh.airspeed_m_per_s = planned->m_per_s;
-        chosen.push_back(
-            fmt::format("airspeed_m_per_s = {}, {}; --airspeed states another", planned->m_per_s, planned->source));
-    }
-}
-
 /// The mission that the options describe, to be written to `file`.
 mission::NewMission described_mission(const NewMissionArguments& arguments, const std::filesystem::path& file) {
     const auto mechanical = required_file(arguments.model, "model", "batch");
@@ -107,17 +84,9 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
-    if (arguments.plan) {
-        if (!fresh.model.physical && !arguments.airspeed_m_per_s)
-            throw InputError(
-                {mechanical}, "has no [physical] part, which predicts the power along a plan",
-                "give the ground speed that its flights flew, --airspeed M_PER_S: their mean power in calm "
-                "air is then assumed; or make a model of flights that measured their airspeed");
-        fresh.flown = mission::path_of_plan(
-            *arguments.plan, named_from(folder, *arguments.plan), arguments.blocks,
-            arguments.airspeed_m_per_s.value_or(mission::new_airspeed_m_per_s(fresh.model)), fresh.model.is_rotorcraft);
-        choose_airspeed(arguments, fresh);
-    }
+    if (arguments.plan)
+        fly_plan({*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks, arguments.airspeed_m_per_s},
+                 fresh);
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
