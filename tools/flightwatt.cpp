@@ -10,6 +10,9 @@
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace {
 
@@ -165,9 +168,20 @@ int run_front(const std::string& word) {
     return cli::ok;
 }
 
+/// Keeps memory that was freed instead of returning it to the kernel and asking for it again: fits and logs allocate and
+/// free the same megabytes thousands of times, and a new page costs more than what is computed on it.
+void keep_memory() {
+#ifdef __GLIBC__
+    constexpr int megabyte = 1 << 20;
+    ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
+    ::mallopt(M_TRIM_THRESHOLD, 512 * megabyte);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_memory();
     constexpr std::string_view prefix = "flightwatt-";
     const std::string called = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "";
     if (const auto linked = called.starts_with(prefix) ? find_stage(called.substr(prefix.size())) : std::nullopt)

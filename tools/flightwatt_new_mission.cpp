@@ -8,7 +8,7 @@
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
 #include "mission/mission_file.h"
-#include "mission/new_mission_path.h"
+#include "mission/new_mission_plan.h"
 #include "mission/new_mission_toml.h"
 #include "stages.h"
 
@@ -86,7 +86,7 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.pack = battery::read_battery(pack);
     if (arguments.plan)
         fly_plan({*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks, arguments.airspeed_m_per_s},
-                 fresh);
+                 mechanical, fresh);
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";

@@ -16,7 +16,7 @@ using namespace flightwatt;
 
 struct PlayArguments {
     std::optional<std::string> to;
-    double speed = 1.0;
+    live::PlaybackOptions how;
     std::optional<std::string> messages;
     std::optional<std::string> aircraft;
 };
@@ -49,6 +49,7 @@ Fields<PlaybackReport> record_fields(const PlaybackReport*) {
     using R = PlaybackReport;
     const auto skipped = [](const R& r) { return Keyed<std::size_t>(r.left_out.begin(), r.left_out.end()); };
     return {field("messages", &R::messages, "messages sent"),
+            field("lost", &R::lost, "messages that were drawn to be lost"),
             field("skipped", skipped, "lines that were not sent, by reason"),
             field("shortened_gaps", &R::shortened_gaps, "gaps of more than ten minutes, played as ten minutes"),
             field("log_s", &R::log_s, "played time of the log"),
@@ -91,7 +92,7 @@ int play(const cli::StageCall& call, const PlayArguments& arguments) {
         if (arguments.messages) throw UsageError("--messages defines Paparazzi's messages: MAVLink's are known");
         const auto target = live::open_mavlink_target(to.substr(mavlink.size()));
         print_report(call, arguments,
-                     live::play_as_mavlink(call.inputs.front(), arguments.speed, target, stop, arguments.aircraft));
+                     live::play_as_mavlink(call.inputs.front(), arguments.how, target, stop, arguments.aircraft));
         return cli::ok;
     }
     if (arguments.aircraft) throw UsageError("--aircraft belongs to mavlink: the messages of all are sent else");
@@ -101,7 +102,7 @@ int play(const cli::StageCall& call, const PlayArguments& arguments) {
         return {};
     };
     if (to != "-") target = live::open_udp_target(to.substr(udp.size()), definitions.value());
-    print_report(call, arguments, live::play(call.inputs.front(), arguments.speed, target, stop, definitions));
+    print_report(call, arguments, live::play(call.inputs.front(), arguments.how, target, stop, definitions));
     return cli::ok;
 }
 
@@ -125,9 +126,15 @@ the standard output; > FILE.data is a file that grows).)"};
     constexpr double max_speed = 100'000.0;
     auto& options = stage.options;
     options.add("to", arguments.to, {.value = "TARGET"}, "the target");
-    options.add("speed", arguments.speed,
+    options.add("speed", arguments.how.speed,
                 {.value = "X", .min = 0.0, .max = max_speed, .above_min = true, .unit = "times as fast"},
                 "speed relative to the log's own time");
+    options.add("from", arguments.how.from_s, {.value = "S", .min = 0.0, .unit = "s"},
+                "begin so long after the log's first message");
+    options.add("loss", arguments.how.loss_percent, {.value = "PERCENT", .min = 0.0, .max = 100.0, .unit = "%"},
+                "lose so many of the messages, drawn at random, in each run the same");
+    options.add("delay", arguments.how.delay_s, {.value = "S", .min = 0.0, .max = 60.0, .unit = "s"},
+                "send each message later by up to S, drawn at random: later ones may overtake it");
     options.add("messages", arguments.messages, cli::input_file("FILE"),
                 "definitions of the messages, for udp and binary logs: a messages.xml, or a .log; default: the log's");
     options.add("aircraft", arguments.aircraft, {.value = "ID"}, "the aircraft of several in the log, for mavlink");

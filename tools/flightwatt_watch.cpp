@@ -1,14 +1,20 @@
 // flightwatt watch: the energy of a flight that is in the air, once a second.
 
 #include "base/atomic_file.h"
+#include "base/number.h"
 #include "base/signal_watch.h"
+#include "base/temporary_folder.h"
+#include "battery/battery_toml.h"
 #include "cli/output/live_options.h"
 #include "cli/output/watch_output.h"
 #include "cli/stage.h"
+#include "live/announcer.h"
+#include "live/link_mission.h"
 #include "live/live_schedule.h"
 #include "live/live_state.h"
 #include "live/page_server.h"
 #include "live/recorder.h"
+#include "live/sources/datagrams.h"
 #include "report/page.h"
 #include "stages.h"
 #include "telemetry/log_configuration.h"
@@ -31,7 +37,95 @@ struct WatchArguments {
     bool replans = false;
     std::optional<std::string> record;
     std::optional<std::string> serve;
+    bool announces = false;
+    bool requests_mission = false;
+    std::string announce_as = "245:191";
+    std::optional<std::string> announce_to;
     bool until_landed = false;
+};
+
+/// Parses "SYSTEM:COMPONENT", each 1 to 255.
+std::pair<std::uint8_t, std::uint8_t> parse_identity(std::string_view text) {
+    constexpr std::uint64_t max_id = 255;
+    const auto colon = text.find(':');
+    const auto system = parse_unsigned(text.substr(0, colon));
+    const auto component = colon == std::string_view::npos ? std::nullopt : parse_unsigned(text.substr(colon + 1));
+    const auto is_id = [](const auto& id) { return id && *id >= 1 && *id <= max_id; };
+    if (!is_id(system) || !is_id(component))
+        throw UsageError(fmt::format("--announce-as {}: expected SYSTEM:COMPONENT, each 1 to 255", text));
+    return {static_cast<std::uint8_t>(*system), static_cast<std::uint8_t>(*component)};
+}
+
+/// Tells ground stations of the prediction, over the link or to an address of its own.
+class Announcement {
+  public:
+    Announcement(const WatchArguments& arguments, live::MessageSource& source) : source_(source) {
+        if (!arguments.announces) return;
+        const auto [system, component] = parse_identity(arguments.announce_as);
+        announcer_.emplace(system, component);
+        if (arguments.announce_to) datagrams_.emplace(*arguments.announce_to);
+    }
+
+    void print_state(const live::LiveState& state) {
+        if (!announcer_) return;
+        for (const auto& packet : announcer_->packets(state, seconds_since(start_))) {
+            if (datagrams_)
+                datagrams_->send(packet);
+            else
+                source_.send(packet);
+        }
+    }
+
+  private:
+    live::MessageSource& source_;
+    std::optional<live::Announcer> announcer_;
+    std::optional<live::Datagrams> datagrams_;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// The mission of the aircraft as its link has it: the prediction's, once it is whole and where no option states it.
+class MissionFromLink {
+  public:
+    MissionFromLink(const cli::StageCall& call, const WatchArguments& arguments, live::MessageSource& source)
+        : call_(call), arguments_(arguments), source_(source) {
+        const auto& basis = arguments.basis;
+        const bool is_stated = basis.mission || basis.plan || basis.remaining_s;
+        if (arguments.requests_mission && (is_stated || !basis.model || !basis.battery))
+            throw UsageError(
+                "--request-mission asks the aircraft for what is flown: expected --model and --battery, "
+                "and none of --mission, --plan and --remaining");
+        if (!arguments.source.mavlink || is_stated || !basis.model || !basis.battery) return;
+        const auto [system, component] = parse_identity(arguments.announce_as);
+        mission_.emplace(system, component);
+    }
+
+    /// Takes a message; returns the input of predictions by a mission that is new.
+    std::optional<live::PredictionInput> receive(const live::IncomingMessage& message) {
+        if (!mission_ || !mission_->receive(message)) return std::nullopt;
+        const auto file = folder_.path() / "mission.waypoints";
+        write_file_atomically(file, mission_->waypoints());
+        try {
+            auto basis = cli::read_plan_basis(call_, arguments_.basis, file);
+            cli::note(call_, "the mission of the aircraft is known: its way is predicted");
+            return basis;
+        } catch (const InputError& error) {
+            cli::warn(call_, fmt::format("the mission of the aircraft is not used: {}", error.what()));
+            return std::nullopt;
+        }
+    }
+
+    void request() {
+        if (!mission_ || !arguments_.requests_mission) return;
+        for (const auto& packet : mission_->requests(seconds_since(start_))) source_.send(packet);
+    }
+
+  private:
+    const cli::StageCall& call_;
+    const WatchArguments& arguments_;
+    live::MessageSource& source_;
+    std::optional<live::LinkMission> mission_;
+    TemporaryFolder folder_;
+    Clock::time_point start_ = Clock::now();
 };
 
 /// Publishes the state on a page.
@@ -74,10 +168,26 @@ struct Watched {
     compute::ComputeModel compute;
 };
 
-Watched read_watched(const cli::StageCall& call, const cli::BasisArguments& arguments) {
+/// What is known before the aircraft's mission is: charge and power, but no landing.
+live::PredictionInput waiting_basis(const cli::BasisArguments& arguments) {
+    live::PredictionInput basis;
+    basis.model = mechanical::read_predicting_model(*arguments.model);
+    basis.battery = battery::read_battery(*arguments.battery);
+    basis.battery_file = *arguments.battery;
+    basis.initial_soc_percent = arguments.initial_soc_percent;
+    basis.no_prediction_reason =
+        "the aircraft's mission: it passes by while a ground station reads it; "
+        "--request-mission asks for it, --plan, --mission or --remaining state it";
+    return basis;
+}
+
+Watched read_watched(const cli::StageCall& call, const cli::BasisArguments& arguments, bool is_mavlink) {
     Watched watched;
-    if (arguments.mission || arguments.model)
+    const bool is_of_link = is_mavlink && arguments.model && arguments.battery && !arguments.remaining_s;
+    if (arguments.mission || arguments.plan || (arguments.model && !is_of_link))
         watched.basis = cli::read_basis(call, arguments, &watched.mission);
+    else if (is_of_link)
+        watched.basis = waiting_basis(arguments);
     else if (arguments.battery || arguments.remaining_s)
         throw UsageError("no model given: expected --mission MISSION.toml, or --model MODEL.toml");
     if (watched.mission) watched.compute = setup_of(*watched.mission).compute;
@@ -106,7 +216,8 @@ void receive_queued(live::MessageSource& source, live::LiveFlight& flight, doubl
 }
 
 /// Runs until the source ends, a signal arrives, or `update_flight` returns a reason; returns the reason.
-std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Update& update_flight) {
+std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, const Update& update_flight,
+                         const std::function<void(const live::IncomingMessage&)>& on_message) {
     constexpr std::chrono::milliseconds wait{100};
     constexpr double silence_shown_s = 1.0;
     const SignalWatch signals;
@@ -119,6 +230,7 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
         messages.clear();
         source.receive(wait, messages);
         for (auto& message : messages) {
+            on_message(message);
             flight.receive(std::move(message), seconds_since(start));
             const auto clock_s = flight.clock_s();
             const bool is_due = clock_s && (!updated_at_s || std::abs(*clock_s - *updated_at_s) >= 1.0);
@@ -140,7 +252,7 @@ std::string watch_source(live::MessageSource& source, live::LiveFlight& flight, 
 }
 
 int watch(const cli::StageCall& call, const WatchArguments& arguments) {
-    auto watched = read_watched(call, arguments.basis);
+    auto watched = read_watched(call, arguments.basis, arguments.source.mavlink.has_value());
     auto options = arguments.live;
     std::optional<std::string> log_text;
     if (const auto file = cli::definitions_of_source(arguments.source)) {
@@ -158,15 +270,25 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));
     cli::WatchOutput speaker(call, watched.compute);
     LivePage page(call, arguments.serve, watched.compute, watched.basis);
+    Announcement announcement(arguments, *source);
+    MissionFromLink link_mission(call, arguments, *source);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
         speaker.print_state(state);
         page.print_state(state);
+        announcement.print_state(state);
+        link_mission.request();
         if (!speaker.is_read()) return "the reader of the output has ended";
         return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
-    const auto why = watch_source(*source, flight, update_flight);
+    const auto on_message = [&](const live::IncomingMessage& message) {
+        auto basis = link_mission.receive(message);
+        if (!basis) return;
+        flight.set_input(*basis);
+        watched.basis = std::move(basis);
+    };
+    const auto why = watch_source(*source, flight, update_flight, on_message);
     flight.end();
     update_flight(0.0);
     for (const auto& [reason, count] : source->report().unusable) cli::warn(call, fmt::format("{}: {}", reason, count));
@@ -210,6 +332,15 @@ with its source, or by a signal, and then prints its last prediction. The source
                 "write the received messages as a log into this folder");
     options.add("serve", arguments.serve, {.value = "PORT"},
                 "serve a page on this machine; at ADDRESS:PORT also to others");
+    options.add(
+        "announce", arguments.announces,
+        "tell the ground station by MAVLink: fw_land, fw_home, fw_resv once a second, a text when an alarm changes",
+        {.needs = {"mavlink"}});
+    options.add("announce-to", arguments.announce_to, {.value = "ADDRESS:PORT", .needs = {"announce"}},
+                "send that to this UDP address instead of back over the link");
+    options.add(
+        "announce-as", arguments.announce_as, {.value = "SYSTEM:COMPONENT", .needs = {"announce", "request-mission"}},
+        "MAVLink identity of what is sent; a ground station may show only what comes from the aircraft's own system");
     options.add("silence-s", arguments.live.silence_threshold_s,
                 {.value = "S", .min = 0.0, .above_min = true, .unit = "s"},
                 "silence after which the link counts as lost");

@@ -14,7 +14,8 @@ namespace flightwatt::live {
 /// Kinds of input of a predictor.
 enum class PredictorInput {
     messages,  ///< messages of Paparazzi, as text or link frames
-    samples    ///< measurements as Sample
+    samples,   ///< measurements as Sample
+    mavlink    ///< packets of MAVLink 1 and 2, as bytes
 };
 
 /// Files and options as for `flightwatt watch`; an empty name means no file.
@@ -23,7 +24,7 @@ struct PredictorSetup {
     std::string model_file = {};             ///< a model, with `remaining_s`
     std::string battery_file = {};           ///< replaces the mission's
     std::string definitions_file = {};       ///< .log or messages.xml: required for frames; default of text: built-in
-    std::string aircraft_id = {};            ///< empty: the first that flies
+    std::string aircraft_id = {};            ///< empty: the first that flies; of MAVLink the number of the system
     std::optional<double> remaining_s = {};  ///< rest of the cruise, from any moment
     std::optional<double> initial_soc_percent = {};  ///< absent: by the resting voltage
     bool replan = false;                             ///< plans again at every slot of the mission's plan
@@ -130,7 +131,7 @@ class Predictor {
     virtual bool push_line(std::string_view line) noexcept = 0;
     /// Adds a message without its time: "20 ENERGY 57 11.62 1.64 19.1 0.08 0.97".
     virtual bool push_message(double time_s, std::string_view message) noexcept = 0;
-    /// Adds bytes of a link (pprzlink 1 or 2, plain or XBee), in chunks of any size, received at `time_s`.
+    /// Adds bytes of a link (pprzlink 1 or 2, plain or XBee; or MAVLink), in chunks of any size, received at `time_s`.
     virtual bool push_frames(double time_s, std::string_view bytes) noexcept = 0;
     /// Adds measurements.
     virtual bool push_sample(const Sample& sample) noexcept = 0;

@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
+#include "mission/new_mission_plan.h"
 #include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
@@ -48,7 +49,7 @@ class PlanFlight {
         if (change.airspeed_m_per_s) plan.airspeed_m_per_s = change.airspeed_m_per_s;
         if (change.heading_deg) plan.heading_deg = change.heading_deg;
         if (change.payload_kg) fresh.payload_kg = change.payload_kg;
-        fly_plan(plan, fresh);
+        fly_plan(plan, fresh.mechanical, fresh);
         if (chosen != nullptr) *chosen = fresh.flown->chosen;
         const auto file = plan.file.filename().string() + ".toml";  // in the working folder, and never written
         try {

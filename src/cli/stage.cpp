@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/overwrite_guard.h"
 #include "base/parallel.h"
+#include "base/temporary_folder.h"
 #include "cli/screen/diagnostic_lines.h"
 #include "cli/terminal.h"
 
@@ -126,30 +127,16 @@ void register_files(const StageCall& call, const Options& options, const Options
 class StandardInputFile {
   public:
     StandardInputFile() {
-        const char* temporary = std::getenv("TMPDIR");
-        auto pattern = fmt::format("{}/flightwatt-XXXXXX", temporary != nullptr ? temporary : "/tmp");
-        if (::mkdtemp(pattern.data()) == nullptr)
-            throw OutputError(fmt::format("{}: cannot make a folder: {}", pattern, std::strerror(errno)));
-        folder_ = pattern;
         std::ofstream copy(file(), std::ios::binary);
         if (std::cin.peek() != std::char_traits<char>::eof()) copy << std::cin.rdbuf();
         copy.close();
-        if (copy) return;
-        const int error = errno;
-        remove();
-        throw OutputError(fmt::format("cannot copy the standard input to {}: {}", pattern, std::strerror(error)));
+        if (!copy)
+            throw OutputError(fmt::format("cannot copy the standard input to {}: {}", file(), std::strerror(errno)));
     }
-    ~StandardInputFile() { remove(); }
-    StandardInputFile(const StandardInputFile&) = delete;
-    StandardInputFile& operator=(const StandardInputFile&) = delete;
-    std::string file() const { return folder_ / "standard_input.data"; }
+    std::string file() const { return folder_.path() / "standard_input.data"; }
 
   private:
-    void remove() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 /// The options of every stage.

@@ -28,12 +28,17 @@ class LiveFlight::Impl {
   public:
     Impl(LiveOptions options, std::optional<PredictionInput> input, std::unique_ptr<LiveSchedule> schedule)
         : options_(std::move(options)),
-          input_(std::move(input)),
           schedule_(std::move(schedule)),
-          store_(options_.flight, std::move(options_.configuration), input_ && (input_->path || input_->motion),
-                 options_.is_mavlink) {
+          store_(options_.flight, std::move(options_.configuration),
+                 options_.is_mavlink || (input && (input->path || input->motion)), options_.is_mavlink) {
         if (options_.aircraft_id) store_.keep_only(aircraft_ = *options_.aircraft_id);
-        if (!input_ || !input_->battery) return;
+        if (input) set_input(std::move(*input));
+    }
+
+    void set_input(PredictionInput input) {
+        input_ = std::move(input);
+        battery_warnings_.clear();
+        if (!input_->battery) return;
         for (const auto& warning : battery_warnings(*input_->battery))
             battery_warnings_.push_back(fmt::format("{}: {}", input_->battery_file, warning));
     }
@@ -371,6 +376,7 @@ LiveFlight::LiveFlight(LiveOptions options, std::optional<PredictionInput> input
 
 LiveFlight::~LiveFlight() = default;
 
+void LiveFlight::set_input(PredictionInput input) { impl_->set_input(std::move(input)); }
 void LiveFlight::receive(IncomingMessage message, double arrival_s) { impl_->receive(std::move(message), arrival_s); }
 
 std::optional<double> LiveFlight::clock_s() const { return impl_->clock_s(); }

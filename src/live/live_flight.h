@@ -38,6 +38,8 @@ class LiveFlight {
     LiveFlight(LiveOptions options, std::optional<PredictionInput> input, std::unique_ptr<LiveSchedule> schedule);
     ~LiveFlight();
 
+    /// Predicts by another input from now on: the aircraft's mission became known.
+    void set_input(PredictionInput input);
     /// Adds a message. `arrival_s` is its time if it has none, and shows that one aircraft is silent while others send.
     void receive(IncomingMessage message, double arrival_s);
     /// Returns the time of the latest accepted message; std::nullopt before the first.

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/units.h"
 #include "flight/load_flight.h"
 #include "flight/select.h"
 #include "flight/telemetry_series.h"
@@ -15,7 +16,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <map>
 #include <memory>
+#include <random>
 #include <thread>
 #include <utility>
 
@@ -42,24 +46,25 @@ bool wait_for(Clock::time_point then, const std::function<bool()>& stop) {
 /// Sends the messages of a log to a target when they are due.
 class Player final : public MessageSink {
   public:
-    Player(double speed, const PlaybackTarget& target, const std::function<bool()>& stop)
-        : speed_(speed), target_(target), stop_(stop) {}
+    Player(const PlaybackOptions& options, const PlaybackTarget& target, const std::function<bool()>& stop)
+        : options_(options), target_(target), stop_(stop) {}
 
     bool is_stopped() const { return report_.stopped; }
 
     void push(IncomingMessage message) override {
         if (!message.time_s) return count("no time", 1);
         if (report_.stopped) return;
+        if (!first_s_) first_s_ = message.time_s;
+        if (!last_s_ && *message.time_s < *first_s_ + options_.from_s) return;
         const double step_s = last_s_ ? std::max(0.0, *message.time_s - *last_s_) : 0.0;
         if (step_s > max_played_gap_s) ++report_.shortened_gaps;
         report_.log_s += std::min(step_s, max_played_gap_s);
         last_s_ = message.time_s;
-        const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(report_.log_s / speed_));
-        report_.stopped = !wait_for(due, stop_);
-        if (report_.stopped) return;
-        report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
-        const auto reason = target_(message);
-        ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
+        if (drawn() < options_.loss_percent) return void(++report_.lost);
+        send_waiting(report_.log_s);
+        const double delay_s = options_.delay_s > 0.0 ? units::amount_from_percent(options_.delay_s, drawn()) : 0.0;
+        waiting_.emplace(report_.log_s + delay_s, std::move(message));
+        send_waiting(report_.log_s);
     }
 
     void count(std::string_view reason, std::size_t times) override {
@@ -67,16 +72,39 @@ class Player final : public MessageSink {
     }
 
     PlaybackReport end() {
+        send_waiting(std::numeric_limits<double>::infinity());
         report_.played_s = Seconds(Clock::now() - begin_).count();
         return std::move(report_);
     }
 
   private:
-    double speed_;
+    /// A number from 0 to 100, the same ones in each run.
+    double drawn() {
+        constexpr double range = 4'294'967'296.0;  // of mt19937
+        return units::percent_per_whole * static_cast<double>(random_()) / range;
+    }
+
+    /// Sends those that are due until a time since the begin, on the log's clock.
+    void send_waiting(double until_s) {
+        while (!waiting_.empty() && waiting_.begin()->first <= until_s && !report_.stopped) {
+            const auto next = waiting_.extract(waiting_.begin());
+            const auto due = begin_ + std::chrono::duration_cast<Clock::duration>(Seconds(next.key() / options_.speed));
+            report_.stopped = !wait_for(due, stop_);
+            if (report_.stopped) return;
+            report_.max_delay_s = std::max(report_.max_delay_s, Seconds(Clock::now() - due).count());
+            const auto reason = target_(next.mapped());
+            ++(reason.empty() ? report_.messages : report_.left_out[std::string(reason)]);
+        }
+    }
+
+    PlaybackOptions options_;
     const PlaybackTarget& target_;
     const std::function<bool()>& stop_;
     PlaybackReport report_;
-    std::optional<double> last_s_;  ///< of the message before, on the log's clock
+    std::optional<double> first_s_;                   ///< of the log, on its clock
+    std::optional<double> last_s_;                    ///< of the message before
+    std::multimap<double, IncomingMessage> waiting_;  ///< by when they are sent, on the log's clock since the begin
+    std::mt19937 random_;
     Clock::time_point begin_ = Clock::now();
 };
 
@@ -130,7 +158,7 @@ PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary
     return [target](const IncomingMessage& message) { return target->send(message); };
 }
 
-PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
+PlaybackReport play(const std::filesystem::path& log, const PlaybackOptions& options, const PlaybackTarget& target,
                     const std::function<bool()>& stop, const std::optional<telemetry::MessageDictionary>& definitions) {
     const auto text = telemetry::read_data_file(log);
     if (const auto autopilot = telemetry::detect_autopilot_format(text)) {
@@ -143,7 +171,7 @@ PlaybackReport play(const std::filesystem::path& log, double speed, const Playba
         throw InputError({log.string()}, "is a binary log without a .log that defines its messages",
                          "give the messages.xml or .log of the aircraft and its software version: --messages FILE");
     }
-    Player player(speed, target, stop);
+    Player player(options, target, stop);
     if (framing) {
         play_binary({text, *framing, log, log, &*definitions}, player);
     } else {
@@ -158,10 +186,11 @@ PlaybackTarget open_mavlink_target(std::string_view to) {
     return [target](const IncomingMessage& message) { return target->send(message.packet); };
 }
 
-PlaybackReport play_as_mavlink(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
-                               const std::function<bool()>& stop, const std::optional<std::string>& aircraft) {
+PlaybackReport play_as_mavlink(const std::filesystem::path& log, const PlaybackOptions& options,
+                               const PlaybackTarget& target, const std::function<bool()>& stop,
+                               const std::optional<std::string>& aircraft) {
     const flight::FlightFile file(log);
-    Player player(speed, target, stop);
+    Player player(options, target, stop);
     if (file.autopilot() == telemetry::AutopilotFormat::tlog) {
         MavlinkReader reader(player, std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()),
                              true);

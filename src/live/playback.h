@@ -26,9 +26,18 @@ using PlaybackTarget = std::function<std::string_view(const IncomingMessage&)>;
 PlaybackTarget open_udp_target(std::string_view to, telemetry::MessageDictionary definitions,
                                telemetry::LinkVersion version = telemetry::LinkVersion::v2);
 
+/// How a log is played.
+struct PlaybackOptions {
+    double speed = 1.0;         ///< relative to the log's own time
+    double from_s = 0.0;        ///< what is played begins so long after the log's first message
+    double loss_percent = 0.0;  ///< share of the messages that are drawn to be lost, always the same ones
+    double delay_s = 0.0;       ///< each is sent later by a time drawn from 0 to this: later ones may overtake it
+};
+
 /// What was played, and how exactly.
 struct PlaybackReport {
     std::size_t messages = 0;                                  ///< messages sent
+    std::size_t lost = 0;                                      ///< messages that were drawn to be lost
     std::map<std::string, std::size_t, std::less<>> left_out;  ///< lines that were not sent, by reason
     std::size_t shortened_gaps = 0;                            ///< gaps of more than max_played_gap_s
     double log_s = 0.0;                                        ///< played time of the log, on its clock
@@ -40,10 +49,10 @@ struct PlaybackReport {
 /// Length to which longer gaps of a log are shortened: they are mostly steps of its clock.
 inline constexpr double max_played_gap_s = 600.0;
 
-/// Plays a log, text or binary (compressed or not), at `speed` times its own speed until its end or until `stop`
-/// returns true. Where the log's clock goes back, the next message follows at once. `definitions` define the messages
+/// Plays a log, text or binary (compressed or not), until its end or until `stop` returns true. Where the log's clock
+/// goes back, the next message follows at once. `definitions` define the messages
 /// of a binary log. Throws InputError for a log that cannot be read.
-PlaybackReport play(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
+PlaybackReport play(const std::filesystem::path& log, const PlaybackOptions& options, const PlaybackTarget& target,
                     const std::function<bool()>& stop,
                     const std::optional<telemetry::MessageDictionary>& definitions = {});
 
@@ -53,7 +62,8 @@ PlaybackTarget open_mavlink_target(std::string_view to);
 
 /// Plays a log of any kind as MAVLink, as play() does: the packets of a .tlog; of other logs those that the aircraft would
 /// send, by its tracks. Of several aircraft `aircraft` names one. Throws InputError for a log that cannot be read.
-PlaybackReport play_as_mavlink(const std::filesystem::path& log, double speed, const PlaybackTarget& target,
-                               const std::function<bool()>& stop, const std::optional<std::string>& aircraft = {});
+PlaybackReport play_as_mavlink(const std::filesystem::path& log, const PlaybackOptions& options,
+                               const PlaybackTarget& target, const std::function<bool()>& stop,
+                               const std::optional<std::string>& aircraft = {});
 
 }  // namespace flightwatt::live

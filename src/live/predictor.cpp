@@ -1,11 +1,13 @@
 #include "base/error.h"
 #include "battery/battery_toml.h"
+#include "flight/telemetry_series.h"
 #include "live/live_flight.h"
 #include "live/live_state.h"
 #include "live/prediction.h"
 #include "mission/mission_file.h"
 #include "telemetry/link_decoder.h"
 #include "telemetry/log_configuration.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
 #include <array>
@@ -91,6 +93,9 @@ LiveOptions options_of(const PredictorSetup& setup) {
     LiveOptions options;
     if (!setup.aircraft_id.empty()) options.aircraft_id = setup.aircraft_id;
     options.max_rows = setup.max_rows;
+    options.is_mavlink = setup.input == PredictorInput::mavlink;
+    if (options.is_mavlink && !setup.definitions_file.empty())
+        throw UsageError("definitions_file defines Paparazzi's messages: MAVLink's are known");
     if (setup.input == PredictorInput::samples) {
         options.configuration = sample_configuration();
     } else if (!setup.definitions_file.empty()) {
@@ -142,6 +147,8 @@ class LivePredictor final : public Predictor {
           compute_(std::move(start.compute)) {
         if (setup.input == PredictorInput::messages && !setup.definitions_file.empty())
             decoder_.emplace(telemetry::read_message_dictionary(setup.definitions_file));
+        if (setup.input == PredictorInput::mavlink)
+            mavlink_.emplace(std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()), false);
         state_.components = components_of({});
     }
 
@@ -156,6 +163,14 @@ class LivePredictor final : public Predictor {
         return push(PredictorInput::messages, time_s, [&] { flight_.receive({time_s, std::string(message)}, time_s); });
     }
     bool push_frames(double time_s, std::string_view bytes) noexcept override {
+        if (mavlink_)
+            return push(PredictorInput::mavlink, time_s, [&] {
+                mavlink_->push(bytes, [&](const telemetry::MavlinkMessageOfVehicle& message) {
+                    const auto& [sender, name, values, packet, unix_s] = message;
+                    flight_.receive({time_s, fmt::format("{} {}", sender, name), false, {values.begin(), values.end()}},
+                                    time_s);
+                });
+            });
         return decoder_ && push(PredictorInput::messages, time_s, [&] {
                    decoder_->push(bytes, [&](const telemetry::LinkMessage& message) { receive(message, time_s); });
                });
@@ -199,6 +214,7 @@ class LivePredictor final : public Predictor {
     LiveFlight flight_;
     compute::ComputeModel compute_;
     std::optional<telemetry::LinkDecoder> decoder_;
+    std::optional<telemetry::MavlinkDecoder> mavlink_;
     std::size_t not_lines_ = 0;
     PredictorState state_;
 };

@@ -18,6 +18,7 @@
 
 #include <boost/asio.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace flightwatt::live {
 namespace {
@@ -42,6 +43,13 @@ class ReceivingSource : public MessageSource {
     }
     void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) override {
         queue_.take(timeout, messages, report_);
+    }
+    bool send(std::string_view bytes) override {
+        if constexpr (requires { receiver_.send(std::string()); }) {
+            asio::post(context_, [this, packet = std::string(bytes)] { receiver_.send(packet); });
+            return true;
+        }
+        return false;
     }
     const SourceReport& report() const override { return report_; }
 
@@ -73,6 +81,13 @@ class UdpReceiver {
         constexpr int receive_buffer_bytes = 1 << 20;
         socket_.set_option(asio::socket_base::receive_buffer_size(receive_buffer_bytes), ignored);
         asio::co_spawn(context, run(), asio::detached);
+    }
+
+    /// Sends to all from which datagrams came.
+    void send(const std::string& packet) {
+        error_code ignored;
+        socket_.non_blocking(true, ignored);
+        for (const auto& [sender, reader] : readers_) socket_.send_to(asio::buffer(packet), sender, 0, ignored);
     }
 
   private:
@@ -114,6 +129,11 @@ class SerialReceiver {
                 "check that it is plugged in, readable and writable (group dialout), and supports the speed");
         }
         asio::co_spawn(context, run(), asio::detached);
+    }
+
+    /// Asio opens devices so that a write does not wait.
+    void send(const std::string& packet) {
+        if (port_.is_open() && ::write(port_.native_handle(), packet.data(), packet.size()) < 0) return;
     }
 
   private:
@@ -163,6 +183,12 @@ class ConnectedReceiver {
         }
         asio::co_spawn(context, receive(), asio::detached);
         if (greeting_) asio::co_spawn(context, greet(), asio::detached);
+    }
+
+    void send(const std::string& packet) {
+        error_code ignored;
+        socket_.non_blocking(true, ignored);
+        socket_.send(asio::buffer(packet), 0, ignored);
     }
 
   private:

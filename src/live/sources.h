@@ -49,6 +49,9 @@ class MessageSource {
     virtual void receive(std::chrono::milliseconds timeout, std::vector<IncomingMessage>& messages) = 0;
     /// Returns whether no more messages will follow: standard input was closed.
     virtual bool at_end() const { return false; }
+    /// Sends bytes back over the link: to those from which it heard, or to the other end. Bytes that cannot be sent at
+    /// once are dropped. Returns false for a source that is no link of both directions.
+    virtual bool send(std::string_view) { return false; }
     /// Returns the counters since opening.
     virtual const SourceReport& report() const = 0;
 };

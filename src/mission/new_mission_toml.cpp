@@ -1,6 +1,5 @@
 #include "mission/new_mission_toml.h"
 
-#include "base/error.h"
 #include "base/text.h"
 #include "mission/mission.h"
 
@@ -175,32 +174,6 @@ double new_airspeed_m_per_s(const mechanical::MechanicalModel& model) {
     constexpr double small_wing_m_per_s = 13.0;
     if (!model.physical || !(model.physical->mean_airspeed_m_per_s > 0.0)) return small_wing_m_per_s;
     return model.physical->cubic_mean_airspeed_m_per_s.value_or(model.physical->mean_airspeed_m_per_s);
-}
-
-void fly_plan(const PlanToFly& plan, NewMission& mission) {
-    if (!mission.model.physical && !plan.airspeed_m_per_s)
-        throw InputError({mission.mechanical}, "has no [physical] part, which predicts the power along a plan",
-                         "give the ground speed that its flights flew, --airspeed M_PER_S: their mean power in calm "
-                         "air is then assumed; or make a model of flights that measured their airspeed");
-    const double flown_m_per_s = new_airspeed_m_per_s(mission.model);
-    mission.flown = path_of_plan(plan, plan.airspeed_m_per_s.value_or(flown_m_per_s), mission.model.is_rotorcraft);
-    mission.airspeed_m_per_s = plan.airspeed_m_per_s;
-    if (mission.airspeed_m_per_s) return;
-    const auto& planned = mission.flown->speed;
-    const auto& [low, high] = mission.model.physical->airspeed_m_per_s;
-    const bool is_flown = planned && planned->m_per_s >= low && planned->m_per_s <= high;
-    const auto flown = fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", flown_m_per_s);
-    auto& chosen = mission.flown->chosen;
-    if (!planned) {
-        chosen.push_back(flown);
-    } else if (planned->is_default && !is_flown) {
-        chosen.push_back(fmt::format("{}, which did not fly the {} m/s of {}; --airspeed states another", flown,
-                                     planned->m_per_s, planned->source));
-    } else {
-        mission.airspeed_m_per_s = planned->m_per_s;
-        chosen.push_back(
-            fmt::format("airspeed_m_per_s = {}, {}; --airspeed states another", planned->m_per_s, planned->source));
-    }
 }
 
 std::string new_mission_toml(const NewMission& mission) {

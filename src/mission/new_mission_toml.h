@@ -44,11 +44,6 @@ struct NewMission {
 /// Airspeed for the cruise of a new mission: that of the model's flights, or one of a small wing.
 double new_airspeed_m_per_s(const mechanical::MechanicalModel& model);
 
-/// Makes the mission fly a plan, with an airspeed as the plan to fly states it, else the plan's own, else that of the
-/// model's flights. What QGroundControl writes by default counts where the flights flew it. Throws as path_of_plan(), and
-/// InputError for a model without a physical part where no airspeed is stated.
-void fly_plan(const PlanToFly& plan, NewMission& mission);
-
 /// Returns a mission file with what is stated here; with `shows_all_keys` every key of docs/missions.md explained:
 /// optional keys are commented out ("#key" without a blank), with values that fit the files. It can be simulated
 /// unchanged, unless it is to be planned.

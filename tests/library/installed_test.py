@@ -135,6 +135,9 @@ def main():
     compare_phases(examples, program, logs[0])
     compare_files(examples, program, logs, folder)
     compare_mission(examples, program, source / "missions/paper/adaptive.toml")
+    waiting = run([examples / "mavlink_predictor", source / "missions/synthetic/survey-path.toml", os.devnull])
+    if not waiting.startswith("waits for"):
+        sys.exit(f"mavlink_predictor without a byte: {waiting}")
     for i in range(4, len(sys.argv), 4):
         compare(examples / "live_predictor", build, *sys.argv[i:i + 4])
 

@@ -60,7 +60,7 @@ TEST(Playback, SendsAllMessagesInOrderAndCountsTheOthers) {
     const auto log = write_log(
         "10.500 20 PONG \r\nnonsense\n\n10.5 20 A 1\n11.5 20 UNSENDABLE\n3 20 A 2\n5000 20 A 3\n5001 20 LAST");
     Kept kept;
-    const auto report = play(log, 1e5, kept.target(), never);
+    const auto report = play(log, {.speed = 1e5}, kept.target(), never);
     EXPECT_THAT(kept.lines, ElementsAre("10.5 20 PONG ", "10.5 20 A 1", "3 20 A 2", "5000 20 A 3", "5001 20 LAST"));
     EXPECT_EQ(report.messages, 5U);
     EXPECT_EQ(report.left_out.at("lines that are not messages (TIME SENDER NAME ...)"), 1U);
@@ -73,13 +73,13 @@ TEST(Playback, SendsAllMessagesInOrderAndCountsTheOthers) {
 TEST(Playback, TakesAsLongAsItShouldAndEndsWhenItIsStopped) {
     const auto log = write_log("0 20 A 1\n10 20 A 2\n20 20 A 3\n");
     Kept kept;
-    const auto report = play(log, 200.0, kept.target(), never);
+    const auto report = play(log, {.speed = 200.0}, kept.target(), never);
     EXPECT_EQ(kept.lines.size(), 3U);
     EXPECT_GE(report.played_s, 0.1);
     EXPECT_GE(report.max_delay_s, 0.0);
     Kept stopped;
     int asked = 0;
-    EXPECT_TRUE(play(log, 1.0, stopped.target(), [&] { return ++asked > 2; }).stopped);
+    EXPECT_TRUE(play(log, {.speed = 1.0}, stopped.target(), [&] { return ++asked > 2; }).stopped);
     EXPECT_EQ(stopped.lines.size(), 1U);
 }
 
@@ -95,7 +95,7 @@ TEST(Playback, PlaysBinaryLogsAsTheirText) {
     const auto lines = test::energy_lines(50);
     const auto log = write_card_log(lines);
     Kept kept;
-    const auto report = play(log, 1e5, kept.target(), never, test::small_dictionary());
+    const auto report = play(log, {.speed = 1e5}, kept.target(), never, test::small_dictionary());
     ASSERT_EQ(kept.lines.size(), lines.size());
     EXPECT_EQ(kept.lines.front(), "100 " + lines.front());
     EXPECT_EQ(kept.lines.back(), "104.9 " + lines.back());
@@ -104,10 +104,29 @@ TEST(Playback, PlaysBinaryLogsAsTheirText) {
     int asked = 0;
     Kept stopped;
     EXPECT_TRUE(play(
-                    log, 1.0, stopped.target(), [&] { return ++asked > 2; }, test::small_dictionary())
+                    log, {.speed = 1.0}, stopped.target(), [&] { return ++asked > 2; }, test::small_dictionary())
                     .stopped);
     EXPECT_EQ(stopped.lines.size(), 1U);
-    EXPECT_THROW(play(log, 1.0, kept.target(), never), InputError) << "nothing defines its messages";
+    EXPECT_THROW(play(log, {.speed = 1.0}, kept.target(), never), InputError) << "nothing defines its messages";
+}
+
+TEST(Playback, BeginsLaterAndLosesAndDelaysTheSameMessagesEachTime) {
+    std::string lines;
+    for (int i = 0; i < 1000; ++i) lines += fmt::format("{} 1 PING {}\n", 100.0 + 0.1 * i, i);
+    const auto log = write_log(lines);
+    const PlaybackOptions options{.speed = 1e5, .from_s = 50.0, .loss_percent = 20.0, .delay_s = 1.0};
+    Kept kept;
+    const auto report = play(log, options, kept.target(), never);
+    EXPECT_EQ(report.messages + report.lost, 500U);
+    EXPECT_NEAR(static_cast<double>(report.lost), 100.0, 27.0) << "three standard deviations";
+    ASSERT_EQ(kept.lines.size(), report.messages);
+    for (const auto& line : kept.lines) EXPECT_GE(parse_message_line(line)->time_s, 150.0) << line;
+    EXPECT_FALSE(std::ranges::is_sorted(kept.lines, {}, [](const auto& line) {
+        return parse_message_line(line)->time_s;
+    })) << "none was overtaken";
+    Kept again;
+    play(log, options, again.target(), never);
+    EXPECT_EQ(again.lines, kept.lines);
 }
 
 TEST(Playback, RefusesTargetsThatAreNone) {
@@ -119,7 +138,7 @@ TEST(Playback, RefusesTargetsThatAreNone) {
 std::vector<IncomingMessage> played(MessageSource& source, const std::filesystem::path& log, double speed,
                                     const PlaybackTarget& target, std::size_t count) {
     std::vector<IncomingMessage> messages;
-    std::thread player([&] { play(log, speed, target, never); });
+    std::thread player([&] { play(log, {.speed = speed}, target, never); });
     test::wait_until([&] {
         source.receive(milliseconds(10), messages);
         return messages.size() >= count;

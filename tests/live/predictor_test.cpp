@@ -1,5 +1,6 @@
 #include "base/atomic_file.h"
 #include "battery/battery_toml.h"
+#include "helpers/mavlink_packets.h"
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 #include "live/live_flight.h"
@@ -249,6 +250,31 @@ TEST(Predictor, CountsWhatItDoesNotTake) {
     EXPECT_EQ(predictor.update().dropped, 2U);
     EXPECT_EQ(predictor.state().unusable, 1U);
     EXPECT_EQ(predictor.state().rows, 1U);
+}
+
+TEST(Predictor, TakesPacketsOfMavlink) {
+    auto setup = wing_setup();
+    setup.input = PredictorInput::mavlink;
+    EXPECT_THAT(make_predictor(setup).error, HasSubstr("MAVLink's are known"));
+    setup.definitions_file.clear();
+    const auto made = make_predictor(setup);
+    ASSERT_TRUE(made.predictor) << made.error;
+    auto& predictor = *made.predictor;
+    test::MavlinkSender vehicle;
+    double drawn_wh = 0.0;
+    for (int i = 0; i < 1200; ++i) {
+        const double time_s = 0.1 * i;
+        const bool flies = time_s >= 10.0;
+        const auto bytes = vehicle.heartbeat(1) + vehicle.status(11'800, flies ? (i % 2 == 0 ? 190 : 210) : 5) +
+                           vehicle.position(time_s, flies ? std::min(4.0 * (time_s - 10.0), 60.0) : 0.0);
+        EXPECT_TRUE(predictor.push_frames(time_s, bytes));
+        if (flies) drawn_wh += 0.1 * 11.8 * 2.0 / 3600.0;
+    }
+    EXPECT_FALSE(predictor.push_line("1 20 PING")) << "lines are another kind of input";
+    const auto& state = predictor.update();
+    EXPECT_EQ(state.phase, FlightPhase::cruise);
+    EXPECT_NEAR(state.energy_wh.value_or(0.0), drawn_wh, 0.02 * drawn_wh);
+    EXPECT_TRUE(state.landing) << state.waits_for;
 }
 
 }  // namespace

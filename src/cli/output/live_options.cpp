@@ -10,6 +10,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
 #include "mission/mission_file.h"
+#include "mission/new_mission_plan.h"
 #include "telemetry/autopilot_log.h"
 #include "telemetry/binary_log.h"
 #include "telemetry/data_file.h"
@@ -130,6 +131,9 @@ void add_basis_options(Options& options, BasisArguments& arguments) {
                 fmt::format("a mission, instead of --model: the remaining path or cruise is flown, with its model, its "
                             "wind{}",
                             with_battery ? ", its landing, its battery and its schedule" : " and its landing"));
+    options.add("plan", arguments.plan,
+                {.value = "FILE", .file = FileRole::input, .needs = {"battery"}, .excludes = {"mission"}},
+                "a plan that is flown (.plan, .waypoints, GeoJSON, KML, CSV), with --model and --battery");
     options.add(
         "battery", arguments.battery, input_file("BATTERY.toml"),
         "also predict state of charge and voltage at landing, and how long the cruise could continue from there");
@@ -143,9 +147,31 @@ void add_basis_options(Options& options, BasisArguments& arguments) {
         "the battery's state of charge when the log begins; else by its voltage at rest");
 }
 
+PredictionInput read_plan_basis(const StageCall& call, const BasisArguments& arguments,
+                                const std::filesystem::path& plan) {
+    if (!arguments.model || !arguments.battery)
+        throw UsageError("a plan is flown with --model MODEL.toml and --battery BATTERY.toml");
+    mission::NewMission fresh;
+    fresh.name = plan.stem().string();
+    fresh.mechanical = std::filesystem::absolute(*arguments.model).string();
+    fresh.model = mechanical::read_mechanical_model(*arguments.model);
+    fresh.battery = std::filesystem::absolute(*arguments.battery).string();
+    fresh.pack = battery::read_battery(*arguments.battery);
+    fly_plan({plan, std::filesystem::absolute(plan).string(), {}, arguments.airspeed_m_per_s}, *arguments.model, fresh);
+    for (const auto& chosen : fresh.flown->chosen) note(call, fmt::format("chosen: {}", chosen));
+    const auto file = plan.string();
+    const auto mission = mission::parse_mission(new_mission_toml(fresh), file, {.allow_unplanned = true});
+    warn_of_setup(call, setup_of(mission));
+    auto basis = live::input_from_mission(setup_of(mission), file);
+    basis.remaining_s = arguments.remaining_s;
+    return basis;
+}
+
 PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,
                            std::optional<mission::MissionVariant>* mission) {
-    auto basis = arguments.mission ? read_mission_basis(call, arguments, mission) : read_model_basis(call, arguments);
+    auto basis = arguments.mission ? read_mission_basis(call, arguments, mission)
+                 : arguments.plan  ? read_plan_basis(call, arguments, *arguments.plan)
+                                   : read_model_basis(call, arguments);
     if (arguments.battery) {
         basis.battery = battery::read_battery(*arguments.battery);
         basis.battery_file = *arguments.battery;

@@ -7,6 +7,7 @@
 #include "mission/mission.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@
 /// telemetry.
 namespace flightwatt::cli {
 
-/// --model, --remaining, --airspeed, --climb, --mission, --battery, --initial-soc.
+/// --model, --remaining, --airspeed, --climb, --mission, --plan, --battery, --initial-soc.
 struct BasisArguments {
     bool uses_missions_battery = false;  ///< and its state of charge, where none are given
     std::optional<std::string> model;
@@ -24,6 +25,7 @@ struct BasisArguments {
     std::optional<double> airspeed_m_per_s;
     std::optional<double> climb_m_per_s;
     std::optional<std::string> mission;
+    std::optional<std::string> plan;
     std::optional<std::string> battery;
     std::optional<double> initial_soc_percent;
 };
@@ -35,6 +37,11 @@ void add_basis_options(Options& options, BasisArguments& arguments);
 /// live::require_spread and live::require_physical.
 live::PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,
                                  std::optional<mission::MissionVariant>* mission = nullptr);
+
+/// The input of predictions of a plan that is flown with the model and the battery of the options. Throws UsageError if
+/// one of them is missing.
+live::PredictionInput read_plan_basis(const StageCall& call, const BasisArguments& arguments,
+                                      const std::filesystem::path& plan);
 
 /// The time that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
 struct RequestedTime {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <utility>  // boost/asio/awaitable.hpp uses std::exchange
 
 #include <boost/asio.hpp>
 

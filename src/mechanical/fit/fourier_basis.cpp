@@ -10,8 +10,6 @@
 namespace flightwatt::mechanical {
 namespace {
 
-using Complex = std::complex<double>;
-
 /// A pivot below this fraction of its diagonal is rounding: the sums are good to 11 digits.
 constexpr double min_pivot = 1e-9;
 
@@ -95,25 +93,6 @@ std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, cons
     fit.coefficients = qr.solve(values).cwiseQuotient(lengths);
     fit.residual_square_sum = (matrix * fit.coefficients - values).squaredNorm();
     return fit;
-}
-
-TrigonometricSums trigonometric_sums(const PhaseSamples& samples, double step_rad, std::size_t count) {
-    TrigonometricSums sums{std::vector<Complex>(count), std::vector<Complex>(count)};
-    const Eigen::ArrayXd angle_rad = step_rad * as_vector(samples.tau).array();
-    const Eigen::ArrayXd power_w = as_vector(samples.power_w);
-    const Eigen::ArrayXd step_cos = angle_rad.cos();
-    const Eigen::ArrayXd step_sin = angle_rad.sin();
-    Eigen::ArrayXd cos_m = Eigen::ArrayXd::Ones(angle_rad.size());
-    Eigen::ArrayXd sin_m = Eigen::ArrayXd::Zero(angle_rad.size());
-    Eigen::ArrayXd turned(angle_rad.size());
-    for (std::size_t m = 0; m < count; ++m) {
-        sums.weight[m] = {cos_m.sum(), sin_m.sum()};
-        sums.value[m] = {(power_w * cos_m).sum(), (power_w * sin_m).sum()};
-        turned = cos_m * step_cos - sin_m * step_sin;
-        sin_m = sin_m * step_cos + cos_m * step_sin;
-        cos_m.swap(turned);
-    }
-    return sums;
 }
 
 double explained_square_sum(const TrigonometricSums& sums, std::size_t stride, int order) {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "mechanical/fit/trigonometric_sums.h"
 #include "mechanical/fit_records.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
-#include <complex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,18 +38,6 @@ struct LinearFit {
 /// Minimises |matrix * c - values| by QR with column pivoting (columns scaled to length 1), which loses half
 /// the digits that the normal equations lose. std::nullopt if the columns are dependent to rounding.
 std::optional<LinearFit> solve_least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values);
-
-/// Sums over one flight's samples at the frequencies 0, step, 2 step, ... [rad per unit of tau]:
-///     weight[m] = sum exp(i m step tau)         value[m] = sum power exp(i m step tau)
-/// Every inner product of Fourier columns is made of them, since products of cosines are cosines of sums.
-struct TrigonometricSums {
-    std::vector<std::complex<double>> weight;
-    std::vector<std::complex<double>> value;
-};
-
-/// Returns the sums for m = 0 .. count - 1, in samples x count operations. Relative to the sum of absolute values their
-/// error is below 1e-11.
-TrigonometricSums trigonometric_sums(const PhaseSamples& samples, double step_rad, std::size_t count);
 
 /// The sum of squares that the best series of that order at theta = stride * step explains. Needs the sums up to
 /// m = 2 * order * stride. Directions of the basis within rounding of the normal equations do not count: near-collinear

@@ -45,8 +45,11 @@ constexpr std::array definitions{
     Definition{42, "MISSION_CURRENT",
                "uint16_t seq; + uint16_t total; uint8_t mission_state, mission_mode; uint32_t mission_id, fence_id,"
                " rally_points_id"},
+    Definition{43, "MISSION_REQUEST_LIST", "uint8_t target_system, target_component; + uint8_t mission_type"},
     Definition{44, "MISSION_COUNT",
                "uint16_t count; uint8_t target_system, target_component; + uint8_t mission_type; uint32_t opaque_id"},
+    Definition{51, "MISSION_REQUEST_INT",
+               "uint16_t seq; uint8_t target_system, target_component; + uint8_t mission_type"},
     Definition{73, "MISSION_ITEM_INT",
                "float param1, param2, param3, param4; int32_t x, y; float z; uint16_t seq, command;"
                " uint8_t target_system, target_component, frame, current, autocontinue; + uint8_t mission_type"},

@@ -1,0 +1,75 @@
+#include "live/announcer.h"
+
+#include "base/units.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr std::size_t text_bytes = 50;  // of a STATUSTEXT
+
+/// The text as far as it fits, to the end of a word.
+std::string fitting(std::string text) {
+    if (text.size() <= text_bytes) return text;
+    const auto space = text.rfind(' ', text_bytes);
+    return text.substr(0, space == std::string::npos ? text_bytes : space);
+}
+
+double severity_of(std::string_view grade) {
+    constexpr double critical = 2.0;
+    constexpr double warning = 4.0;
+    constexpr double notice = 5.0;
+    return grade == "alarm" ? critical : grade == "caution" ? warning : notice;
+}
+
+}  // namespace
+
+std::vector<std::string> Announcer::packets(const LiveState& state, double now_s) {
+    std::vector<std::string> packets;
+    if (now_s >= values_due_s_) {
+        values_due_s_ = now_s + 1.0;
+        packets.push_back(sender_.heartbeat());
+        add_values(state, now_s, packets);
+    }
+    add_texts(state, now_s, packets);
+    return packets;
+}
+
+void Announcer::add_values(const LiveState& state, double now_s, std::vector<std::string>& packets) {
+    const auto add = [&](const char* name, std::optional<double> value) {
+        if (value)
+            packets.push_back(
+                sender_.packet("NAMED_VALUE_FLOAT", {{"time_boot_ms", now_s / units::milli}, {"value", *value}}, name));
+    };
+    if (!state.prediction || state.landed) return;
+    if (state.prediction->battery) add("fw_land", state.prediction->battery->expected.soc_percent);
+    if (state.turn_home)
+        add("fw_home", units::minute_from_second(std::max(0.0, state.turn_home->latest_in_s.value_or(0.0))));
+    if (state.battery && state.battery->time_to_reserve_s)
+        add("fw_resv", units::minute_from_second(*state.battery->time_to_reserve_s));
+}
+
+/// A higher grade is told at once, any other change after a while, so that none that flickers fills a screen.
+void Announcer::add_texts(const LiveState& state, double now_s, std::vector<std::string>& packets) {
+    constexpr double min_interval_s = 5.0;
+    const auto tell = [&](const std::string& kind, const std::string& grade, const std::string& text) {
+        auto& last = announced_[kind];
+        const bool is_worse = last.grade.empty() || grade == "alarm";
+        if (grade == last.grade || (!is_worse && now_s < last.at_s + min_interval_s)) return;
+        last = {grade, now_s};
+        packets.push_back(sender_.packet("STATUSTEXT", {{"severity", severity_of(grade)}}, fitting(text)));
+    };
+    for (const auto& alarm : state.alarms)
+        tell(alarm.kind, alarm.grade, fmt::format("FlightWatt {}: {}", alarm.grade, alarm.action));
+    for (const auto& [kind, last] : announced_) {
+        const bool is_raised = std::ranges::find(state.alarms, kind, &LiveAlarm::kind) != state.alarms.end();
+        if (!is_raised && !last.grade.empty()) tell(kind, "", fmt::format("FlightWatt: no {} alarm any more", kind));
+    }
+}
+
+}  // namespace flightwatt::live

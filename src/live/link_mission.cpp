@@ -1,0 +1,85 @@
+#include "live/link_mission.h"
+
+#include "base/number.h"
+#include "telemetry/mavlink/frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace flightwatt::live {
+namespace {
+
+constexpr std::size_t max_items = 10'000;
+constexpr double units_per_degree = 1e7;
+constexpr double waypoint_command = 16.0;
+constexpr double frame_above_sea = 0.0;
+
+}  // namespace
+
+bool LinkMission::receive(const IncomingMessage& message) {
+    const auto frame = telemetry::read_mavlink_frame(message.packet);
+    if (!frame || frame->message == nullptr) return false;
+    const auto& name = frame->message->layout.name;
+    const auto of = [&](const char* field) { return frame->number(field); };
+    if (name == "HEARTBEAT") {
+        constexpr double ardupilot = 3.0;
+        system_ = frame->system;
+        is_ardupilot_ = of("autopilot") == ardupilot;
+    } else if (name == "HOME_POSITION") {
+        constexpr double metre_per_unit = 1e-3;
+        home_ = {of("latitude") / units_per_degree, of("longitude") / units_per_degree,
+                 of("altitude") * metre_per_unit};
+    } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
+        count_ = static_cast<std::size_t>(of("count"));
+        std::erase_if(items_, [&](const auto& item) { return item.first >= *count_; });
+    } else if (name == "MISSION_ITEM_INT" && of("seq") < max_items && !(of("mission_type") > 0.0)) {
+        items_[static_cast<std::size_t>(of("seq"))] = {
+            of("frame"),
+            of("command"),
+            {of("param1"), of("param2"), of("param3"), of("param4"), of("x") / units_per_degree,
+             of("y") / units_per_degree, of("z")}};
+    }
+    if (!is_whole() || items_ == whole_) return false;
+    whole_ = items_;
+    return true;
+}
+
+std::vector<std::string> LinkMission::requests(double now_s) {
+    constexpr double autopilot = 1.0;
+    constexpr std::size_t at_once = 20;
+    if (system_ == 0.0 || is_whole() || now_s < asked_s_ + 1.0) return {};
+    asked_s_ = now_s;
+    const telemetry::MavlinkSender::Values target{{"target_system", system_}, {"target_component", autopilot}};
+    if (!count_ || *count_ == 0) return {sender_.packet("MISSION_REQUEST_LIST", target)};
+    std::vector<std::string> packets;
+    for (std::size_t item = 0; item < *count_ && packets.size() < at_once; ++item) {
+        if (items_.contains(item)) continue;
+        auto values = target;
+        values["seq"] = static_cast<double>(item);
+        packets.push_back(sender_.packet("MISSION_REQUEST_INT", values));
+    }
+    return packets;
+}
+
+/// ArduPilot's first item is its home; other autopilots tell it apart.
+std::string LinkMission::waypoints() const {
+    std::string text = "QGC WPL 110\n";
+    const auto add = [&](std::size_t number, const Item& item) {
+        auto parameters = item.parameters;
+        for (auto& value : parameters)
+            if (!std::isfinite(value)) value = 0.0;
+        text += fmt::format("{}\t0\t{}\t{}\t{}\t1\n", number, item.frame, item.command, fmt::join(parameters, "\t"));
+    };
+    if (!is_ardupilot_) {
+        const auto& first = whole_.begin()->second.parameters;
+        const auto home = home_.value_or(std::array{first[4], first[5], 0.0});
+        add(0, {frame_above_sea, waypoint_command, {0.0, 0.0, 0.0, 0.0, home[0], home[1], home[2]}});
+    }
+    for (const auto& [number, item] : whole_) add(number + (is_ardupilot_ ? 0 : 1), item);
+    return text;
+}
+
+}  // namespace flightwatt::live

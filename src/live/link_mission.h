@@ -1,0 +1,51 @@
+#pragma once
+
+#include "live/sources.h"
+#include "telemetry/mavlink_sender.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::live {
+
+/// Collects the mission of an aircraft from its messages on a link of MAVLink, which pass by while a ground station
+/// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected.
+class LinkMission {
+  public:
+    /// Asks as this component of this system.
+    LinkMission(std::uint8_t system, std::uint8_t component) : sender_(system, component) {}
+
+    /// Takes a message of the aircraft; returns whether its mission is new and whole.
+    bool receive(const IncomingMessage& message);
+    /// Returns the packets that ask for what is missing, at most once a second on a clock that does not go back; none
+    /// before the aircraft was heard, and once the mission is whole.
+    std::vector<std::string> requests(double now_s);
+    /// Returns the whole mission as a file of waypoints ("QGC WPL 110"), with its home.
+    std::string waypoints() const;
+
+  private:
+    struct Item {
+        double frame = 0.0;
+        double command = 0.0;
+        std::array<double, 7> parameters = {};  ///< the last three: latitude, longitude, altitude
+        bool operator==(const Item&) const = default;
+    };
+
+    bool is_whole() const { return count_ && items_.size() == *count_ && *count_ > 0; }
+
+    telemetry::MavlinkSender sender_;
+    double system_ = 0.0;  ///< of the aircraft; 0: not heard yet
+    bool is_ardupilot_ = false;
+    std::optional<std::array<double, 3>> home_;  ///< latitude, longitude, altitude above the sea
+    std::optional<std::size_t> count_;
+    std::map<std::size_t, Item> items_;
+    std::map<std::size_t, Item> whole_;  ///< the last whole mission
+    double asked_s_ = -1.0;
+};
+
+}  // namespace flightwatt::live

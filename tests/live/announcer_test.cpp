@@ -1,0 +1,75 @@
+#include "live/announcer.h"
+
+#include "telemetry/mavlink/frames.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// "HEARTBEAT", "fw_land 23.5", "4 text" of each packet.
+std::vector<std::string> told(Announcer& announcer, const LiveState& state, double now_s) {
+    std::vector<std::string> told;
+    for (const auto& packet : announcer.packets(state, now_s)) {
+        const auto frame = telemetry::read_mavlink_frame(packet).value();
+        const auto& name = frame.message->layout.name;
+        EXPECT_EQ(frame.system, 7);
+        EXPECT_EQ(frame.component, 191);
+        if (name == "NAMED_VALUE_FLOAT")
+            told.push_back(frame.text("name") + " " + std::to_string(std::lround(10.0 * frame.number("value"))));
+        else if (name == "STATUSTEXT")
+            told.push_back(std::to_string(std::lround(frame.number("severity"))) + " " + frame.text("text"));
+        else
+            told.push_back(name);
+    }
+    return told;
+}
+
+LiveState predicted_state() {
+    LiveState state;
+    state.prediction.emplace();
+    state.prediction->battery.emplace();
+    state.prediction->battery->expected.soc_percent = 23.5;
+    state.battery.emplace();
+    state.battery->time_to_reserve_s = 600.0;
+    state.turn_home = ReturnDeadline{90.0, false};
+    return state;
+}
+
+TEST(Announcer, TellsKnownValuesOnceASecond) {
+    Announcer announcer(7, 191);
+    auto state = predicted_state();
+    EXPECT_THAT(told(announcer, state, 0.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 15", "fw_resv 100"));
+    EXPECT_THAT(told(announcer, state, 0.9), IsEmpty());
+    state.turn_home->latest_in_s.reset();
+    state.battery->time_to_reserve_s.reset();
+    EXPECT_THAT(told(announcer, state, 1.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 0")) << "too late: now";
+    EXPECT_THAT(told(announcer, LiveState{}, 2.0), ElementsAre("HEARTBEAT")) << "nothing is known";
+    state.landed = true;
+    EXPECT_THAT(told(announcer, state, 3.0), ElementsAre("HEARTBEAT"));
+}
+
+TEST(Announcer, TellsEachChangeOfAnAlarmsGrade) {
+    Announcer announcer(7, 191);
+    LiveState state;
+    told(announcer, state, 0.0);
+    state.alarms = {{"reserve", "caution", "", "turn home within 4 min, or the reserve will be missed at landing"}};
+    EXPECT_THAT(told(announcer, state, 0.1), ElementsAre("4 FlightWatt caution: turn home within 4 min, or the"));
+    EXPECT_THAT(told(announcer, state, 0.2), IsEmpty()) << "it did not change";
+    state.alarms[0].grade = "alarm";
+    EXPECT_THAT(told(announcer, state, 0.3), ElementsAre("2 FlightWatt alarm: turn home within 4 min, or the"));
+    state.alarms[0].grade = "caution";
+    EXPECT_THAT(told(announcer, state, 0.4), IsEmpty()) << "one that falls again at once is not told";
+    state.alarms.clear();
+    EXPECT_THAT(told(announcer, state, 6.0), ElementsAre("HEARTBEAT", "5 FlightWatt: no reserve alarm any more"));
+    EXPECT_THAT(told(announcer, state, 6.5), IsEmpty());
+}
+
+}  // namespace
+}  // namespace flightwatt::live

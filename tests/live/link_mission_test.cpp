@@ -1,0 +1,89 @@
+#include "live/link_mission.h"
+
+#include "helpers/mavlink_packets.h"
+#include "telemetry/mavlink/frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::live {
+namespace {
+
+using test::little_endian;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+IncomingMessage message_of(const std::string& packet) { return {0.0, "1 ANY", false, {}, packet}; }
+
+std::string count_of(test::MavlinkSender& vehicle, std::uint16_t count) {
+    return vehicle.packet(44, little_endian(count) + std::string("\xF5\xBF", 2));
+}
+
+/// MISSION_ITEM_INT of a waypoint above home.
+std::string item(test::MavlinkSender& vehicle, std::uint16_t seq, double latitude_deg, float altitude_m) {
+    return vehicle.packet(73, little_endian(0.0F) + little_endian(0.0F) + little_endian(0.0F) + little_endian(0.0F) +
+                                  little_endian(static_cast<std::int32_t>(latitude_deg * 1e7)) +
+                                  little_endian(std::int32_t{80'000'000}) + little_endian(altitude_m) +
+                                  little_endian(seq) + little_endian(std::uint16_t{16}) +
+                                  std::string("\xF5\xBF\x03\x00\x01", 5));
+}
+
+/// "MISSION_REQUEST_INT 2" of each packet.
+std::vector<std::string> asked(LinkMission& mission, double now_s) {
+    std::vector<std::string> asked;
+    for (const auto& packet : mission.requests(now_s)) {
+        const auto frame = telemetry::read_mavlink_frame(packet).value();
+        const auto& name = frame.message->layout.name;
+        EXPECT_EQ(frame.number("target_system"), 1.0);
+        asked.push_back(name + (name == "MISSION_REQUEST_INT" ? std::to_string(std::lround(frame.number("seq"))) : ""));
+    }
+    return asked;
+}
+
+TEST(LinkMission, AsksForWhatIsMissingUntilItIsWhole) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    EXPECT_THAT(asked(mission, 0.0), IsEmpty()) << "no aircraft was heard";
+    mission.receive(message_of(vehicle.heartbeat()));
+    EXPECT_THAT(asked(mission, 0.0), ElementsAre("MISSION_REQUEST_LIST"));
+    EXPECT_FALSE(mission.receive(message_of(count_of(vehicle, 3))));
+    EXPECT_THAT(asked(mission, 0.5), IsEmpty()) << "at most once a second";
+    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 1, 47.01, 50.0F))));
+    EXPECT_THAT(asked(mission, 1.0), ElementsAre("MISSION_REQUEST_INT0", "MISSION_REQUEST_INT2"));
+    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F))));
+    EXPECT_TRUE(mission.receive(message_of(item(vehicle, 2, 47.02, 60.0F))));
+    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 2, 47.02, 60.0F)))) << "the same once more is not new";
+    EXPECT_THAT(asked(mission, 2.0), IsEmpty());
+    EXPECT_EQ(mission.waypoints(),
+              "QGC WPL 110\n"
+              "0\t0\t3\t16\t0\t0\t0\t0\t47\t8\t0\t1\n"
+              "1\t0\t3\t16\t0\t0\t0\t0\t47.01\t8\t50\t1\n"
+              "2\t0\t3\t16\t0\t0\t0\t0\t47.02\t8\t60\t1\n")
+        << "ArduPilot's first item is home";
+}
+
+TEST(LinkMission, HasTheHomeOfOtherAutopilotsBeforeTheFirstItem) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat(2, 12)));
+    mission.receive(message_of(vehicle.packet(242, little_endian(std::int32_t{470'000'000}) +
+                                                       little_endian(std::int32_t{90'000'000}) +
+                                                       little_endian(std::int32_t{488'000}) + std::string(40, '\0'))));
+    mission.receive(message_of(count_of(vehicle, 1)));
+    EXPECT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.01, 50.0F))));
+    EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t0\t16\t0\t0\t0\t0\t47\t9\t488\t1\n1\t0\t3\t16\t"));
+}
+
+TEST(LinkMission, PassesOverFencesAndWhatIsNoPacket) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    EXPECT_FALSE(mission.receive(message_of("no packet")));
+    constexpr auto fence = '\1';
+    mission.receive(
+        message_of(vehicle.packet(44, little_endian(std::uint16_t{1}) + std::string("\xF5\xBF", 2) + fence)));
+    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 0, 47.0, 50.0F))));
+}
+
+}  // namespace
+}  // namespace flightwatt::live
