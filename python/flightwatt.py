@@ -21,7 +21,7 @@ import warnings
 
 STAGES = (
     "answer init parse convert segment fit validate predict watch diff trends battery batch merge profile new_mission simulate "
-    "compare plan replay path play report export synthesize"
+    "check compare plan replay path play report export synthesize"
 ).split()
 SKIPPED_INPUT = 3  # exit code: some inputs were skipped (with a result), or no input was usable (without one)
 

@@ -40,8 +40,6 @@ namespace {
 
 using namespace flightwatt;
 
-constexpr auto default_folder = "flightwatt-out";
-
 struct AnswerArguments {
     cli::BatchArguments batch;
     answer::Question question;
@@ -339,7 +337,7 @@ Fields<AnswerOutput> record_fields(const AnswerOutput*) {
 }
 
 int answer_logs(const cli::StageCall& call, const AnswerArguments& arguments) {
-    const auto out = call.output.value_or(default_folder);
+    const auto out = call.output.value_or(answer::default_folder);
     cli::refuse_folder_of_logs(call, out);
     const auto options = cli::batch_options(arguments.batch, out);
     const cli::BatchFolder folder(options.out);

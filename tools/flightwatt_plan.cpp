@@ -194,7 +194,7 @@ int print_reach(const cli::StageCall& call, const PlanArguments& arguments, cons
     const auto note = [&](std::string_view text) { cli::note(call, fmt::format("{}: {}", setup.name, text)); };
     if (reach.unit == mission::ReachUnit::path_times) note(describe_path_times(setup, reach.limit.value));
     if (reach.unit != mission::ReachUnit::return_m) return code;
-    if (reach.limit.value >= length_of_legs_m(setup.cruise_path->plan->path))
+    if (reach.limit.value >= length_of_legs_m(drawn_path(*setup.cruise_path->plan)))
         note("the whole path and the way back fit: that is the path's length, and no limit");
     try {
         const auto times = mission::find_reach(load, arguments.probability, mission::ReachUnit::path_times);

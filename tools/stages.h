@@ -6,6 +6,7 @@ namespace flightwatt::stages {
 int answer_stage(int argc, char** argv);
 int batch_stage(int argc, char** argv);
 int battery_stage(int argc, char** argv);
+int check_stage(int argc, char** argv);
 int compare_stage(int argc, char** argv);
 int convert_stage(int argc, char** argv);
 int diff_stage(int argc, char** argv);

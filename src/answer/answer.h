@@ -20,7 +20,8 @@
 /// against it.
 namespace flightwatt::answer {
 
-/// Names of the files of an answer, in the folder of a batch.
+/// Folder of an answer unless --output names one, and the names of its files beside those of a batch.
+inline constexpr auto default_folder = "flightwatt-out";
 inline constexpr auto pack_name = "answer-pack.toml";
 inline constexpr auto mission_name = "answer-mission.toml";
 

@@ -125,6 +125,16 @@ void add_constant_power(double power_w, PhysicalModel& model) {
     model.covariance.emplace_back(model.terms.size(), 0.0);
 }
 
+void add_turns_of_induced_drag(PhysicalModel& model) {
+    const auto induced = std::ranges::find(model.terms, PowerTerm::induced);
+    if (induced == model.terms.end() || std::ranges::count(model.terms, PowerTerm::turn) > 0) return;
+    const auto i = static_cast<std::size_t>(induced - model.terms.begin());
+    for (auto& row : model.covariance) row.push_back(row[i]);
+    if (!model.covariance.empty()) model.covariance.push_back(std::vector<double>(model.covariance[i]));
+    model.terms.push_back(PowerTerm::turn);
+    model.coefficients[PowerTerm::turn] = model.coefficients[PowerTerm::induced];
+}
+
 double max_predicted_airspeed_m_per_s(const PhysicalModel& model) {
     constexpr double beyond_flown = 1.25;
     constexpr double like_hover_m_per_s = 8.0;

@@ -135,6 +135,10 @@ double sum_of_terms_w(const PhysicalModel& model, const TermValues& values);
 /// Adds a power that does not depend on the motion.
 void add_constant_power(double power_w, PhysicalModel& model);
 
+/// Where a model has a term for induced drag and none for turns, gives turns its coefficient: induced drag grows with the
+/// square of the lift.
+void add_turns_of_induced_drag(PhysicalModel& model);
+
 /// The variance [W^2] of that sum by the coefficients' covariance.
 double coefficient_variance_w2(const PhysicalModel& model, const TermValues& values);
 

@@ -151,17 +151,6 @@ class LimitSearch {
     double bad_ = 0.0;
 };
 
-/// Its interval, if it has one, in proportion.
-Mission with_capacity(Mission mission, double capacity_ah) {
-    auto& battery = mission.setup.battery;
-    if (auto& interval = battery.intervals.capacity_ah) {
-        interval->low *= capacity_ah / battery.capacity_ah;
-        interval->high *= capacity_ah / battery.capacity_ah;
-    }
-    battery.capacity_ah = capacity_ah;
-    return mission;
-}
-
 }  // namespace
 
 FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std::optional<double>& probability) {
@@ -179,6 +168,16 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s, const std
             search.share_text()));
     const double most_s = *search.good();
     return search.limit(most_s, std::nextafter(most_s, longest_cruise_s) * (1.0 + 1e-9));
+}
+
+Mission with_capacity(Mission mission, double capacity_ah) {
+    auto& battery = mission.setup.battery;
+    if (auto& interval = battery.intervals.capacity_ah) {
+        interval->low *= capacity_ah / battery.capacity_ah;
+        interval->high *= capacity_ah / battery.capacity_ah;
+    }
+    battery.capacity_ah = capacity_ah;
+    return mission;
 }
 
 Mission with_payload(const Mission& mission, double payload_w) {
@@ -261,29 +260,31 @@ FeasibilityLimit most_path_times(const MissionVariation& with_path_times, const 
 
 std::string describe_path_times(const MissionSetup& mission, double times) {
     const auto& plan = *mission.cruise_path->plan;
-    const auto once = compute_trajectory(plan.path, plan.wind);
+    const auto& drawn = drawn_path(plan);
+    const auto flown_s = [&](double count) {
+        return compute_trajectory(as_flown(plan, repeated(drawn, plan.wind, count)), plan.wind).duration_s;
+    };
     const double whole = std::floor(times);
     const double share_percent = units::percentage(times - whole, 1.0);
     if (whole == 0.0) {
+        const auto once = compute_trajectory(drawn, plan.wind);
         const auto end = position_at(once, times * once.duration_s).element;
-        const auto& elements = plan.path.elements;
+        const auto& elements = drawn.elements;
         return fmt::format("{:.0f} % of the path fits{}: {} of {}, until element {} of {}, {}", share_percent,
                            elements.back().is_return_leg ? " with the way back from there" : "",
-                           duration_text(times * once.duration_s), duration_text(once.duration_s), end + 1,
-                           elements.size(), elements.at(end).name);
+                           duration_text(flown_s(times)), duration_text(flown_s(1.0)), end + 1, elements.size(),
+                           elements.at(end).name);
     }
-    const auto all = compute_trajectory(repeated(plan.path, plan.wind, times), plan.wind);
-    const auto up_to_whole = compute_trajectory(repeated(plan.path, plan.wind, whole), plan.wind);
     return fmt::format(
         "the path is flown {}; {} of cruise remain, {:.0f} % of another time with the way back to its start",
-        whole == 1.0 ? "once" : fmt::format("{:.0f} times", whole),
-        duration_text(all.duration_s - up_to_whole.duration_s), share_percent);
+        whole == 1.0 ? "once" : fmt::format("{:.0f} times", whole), duration_text(flown_s(times) - flown_s(whole)),
+        share_percent);
 }
 
 ReachUnit reach_unit_of(const MissionSetup& mission) {
     if (!mission.cruise_path) return ReachUnit::cruise_s;
     bool has_turns = false;
-    for (const auto& element : mission.cruise_path->plan->path.elements)
+    for (const auto& element : drawn_path(*mission.cruise_path->plan).elements)
         if (std::holds_alternative<path::Circles>(element.shape)) {
             if (!element.is_turn) return ReachUnit::circles;
             has_turns = true;
@@ -307,7 +308,7 @@ Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& p
     if (unit == ReachUnit::cruise_s) return {unit, longest_cruise(variation, probability)};
     if (unit == ReachUnit::circles) return {unit, max_circles(variation, probability)};
     if (unit == ReachUnit::path_times) return {unit, most_path_times(variation, probability)};
-    return {unit, farthest_return(variation, length_of_legs_m(setup.cruise_path->plan->path), probability)};
+    return {unit, farthest_return(variation, length_of_legs_m(drawn_path(*setup.cruise_path->plan)), probability)};
 }
 
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,

@@ -23,6 +23,9 @@ FeasibilityLimit longest_cruise(const MissionVariation& with_cruise_s,
 FeasibilityLimit largest_payload(const MissionVariant& mission,
                                  const std::optional<double>& probability = std::nullopt);
 
+/// The mission with a battery of another capacity; its interval, if it has one, in proportion.
+Mission with_capacity(Mission mission, double capacity_ah);
+
 /// The mission with an additional constant load.
 Mission with_payload(const Mission& mission, double payload_w);
 

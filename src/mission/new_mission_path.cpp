@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "base/units.h"
 #include "path/area.h"
 #include "path/plan_blocks.h"
+#include "path/turns.h"
 #include "path/waypoint_files.h"
 
 #include <cmath>
@@ -20,10 +20,7 @@ namespace {
 constexpr double bank_deg = 30.0;  // of turns that a plan leaves open
 
 /// In whole metres.
-double turn_radius_m(double airspeed_m_per_s) {
-    const double pull_m_per_s2 = units::standard_gravity_m_per_s2 * std::tan(bank_deg / units::degree_per_rad);
-    return std::ceil(airspeed_m_per_s * airspeed_m_per_s / pull_m_per_s2);
-}
+double turn_radius_m(double airspeed_m_per_s) { return std::ceil(path::turn_radius_m(airspeed_m_per_s, bank_deg)); }
 
 bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
@@ -32,7 +29,7 @@ bool has_blocks(std::string_view text) {
     return path::plan_format(text) == path::PlanFormat::flight_plan && !has(text, "<kml");
 }
 
-bool is_area(std::string_view text) {
+bool is_area_text(std::string_view text) {
     return path::plan_format(text) == path::PlanFormat::flight_plan
                ? !has_blocks(text) && has(text, "<outerBoundaryIs")
                : has(text, "\"Polygon\"") && !has(text, "\"fileType\"");
@@ -53,16 +50,16 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
     return best_deg;
 }
 
-NewPath path_of_area(std::string_view text, const std::string& file, const std::string& name, double airspeed_m_per_s,
-                     bool is_rotorcraft) {
+NewPath path_of_area(std::string_view text, const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
     constexpr double usual_spacing_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
     const double spacing_m = is_rotorcraft ? usual_spacing_m : 2.0 * turn_radius_m(airspeed_m_per_s);
-    const double heading_deg = best_heading_deg(text, file, spacing_m);
-    return {{fmt::format("area = {}", toml_string(name)), fmt::format("spacing_m = {}", spacing_m),
+    const double heading_deg =
+        plan.heading_deg ? *plan.heading_deg : best_heading_deg(text, plan.file.string(), spacing_m);
+    return {{fmt::format("area = {}", toml_string(plan.name)), fmt::format("spacing_m = {}", spacing_m),
              fmt::format("heading_deg = {}", heading_deg)},
             {is_rotorcraft ? fmt::format("spacing_m = {}, assumed: your camera and height decide it", spacing_m)
                            : fmt::format("spacing_m = {}, for turns with a bank of {} degrees", spacing_m, bank_deg),
-             fmt::format("heading_deg = {}, for the fewest turns", heading_deg)}};
+             fmt::format("heading_deg = {}, {}", heading_deg, plan.heading_deg ? "as asked" : "for the fewest turns")}};
 }
 
 /// The only block that is flown. Throws UsageError for several.
@@ -77,18 +74,34 @@ std::vector<std::string> only_block(std::string_view text, const std::string& fi
                     file, short_list(flown)));
 }
 
-NewPath open_path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
-                          double airspeed_m_per_s, bool is_rotorcraft) {
+/// "start = { latitude_deg = 43.46, longitude_deg = 1.27 }", or in metres from the origin of a flight plan.
+std::string start_key(const path::GeodeticPosition& home, std::string_view flight_plan, const std::string& file) {
+    if (flight_plan.empty())
+        return fmt::format("start = {{ latitude_deg = {}, longitude_deg = {} }}", home.latitude_deg,
+                           home.longitude_deg);
+    const auto [east_m, north_m] = path::to_local(home, path::flight_plan_origin(flight_plan, file));
+    return fmt::format("start = {{ east_m = {:.2f}, north_m = {:.2f} }}", east_m, north_m);
+}
+
+NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
+    const auto& file = plan.file;
+    auto blocks = plan.blocks;
     const auto text = read_file(file);
-    if (is_area(text)) return path_of_area(text, file.string(), name, airspeed_m_per_s, is_rotorcraft);
     const bool of_blocks = has_blocks(text);
+    const auto start = plan.home ? start_key(*plan.home, of_blocks ? text : "", file.string()) : "";
+    if (is_area_text(text)) {
+        auto path = path_of_area(text, plan, airspeed_m_per_s, is_rotorcraft);
+        if (plan.home) path.keys.push_back(start);
+        return path;
+    }
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
         const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft};
         return of_blocks ? path::parse_plan_blocks(text, file.string(), blocks, settings)
                          : path::read_waypoints(file, settings);
     };
-    NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(name))}, {}};
+    NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(plan.name))}, {}};
+    if (plan.home) path.keys.push_back(start);
     if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
     try {
         path.speed = read(std::nullopt).speed;
@@ -103,9 +116,10 @@ NewPath open_path_of_plan(const std::filesystem::path& file, const std::string& 
 
 }  // namespace
 
-NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
-                     double airspeed_m_per_s, bool is_rotorcraft) {
-    auto path = open_path_of_plan(file, name, std::move(blocks), airspeed_m_per_s, is_rotorcraft);
+bool is_area(const std::filesystem::path& file) { return is_area_text(read_file(file)); }
+
+NewPath path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
+    auto path = open_path_of_plan(plan, airspeed_m_per_s, is_rotorcraft);
     path.keys.emplace_back("return_to_start = true");
     path.chosen.emplace_back("return_to_start = true: from its end straight back; without it, it lands where it ends");
     return path;

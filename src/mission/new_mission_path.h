@@ -11,16 +11,26 @@ namespace flightwatt::mission {
 
 /// The [path] of a new mission, made of a plan.
 struct NewPath {
-    std::vector<std::string> keys;  ///< lines of TOML, beyond the airspeed
-    std::vector<std::string>
-        chosen;  ///< what the plan leaves open: "spacing_m = 40, for turns with a bank of 30 degrees"
+    std::vector<std::string> keys;    ///< lines of TOML, beyond the airspeed
+    std::vector<std::string> chosen;  ///< what the plan leaves open: "heading_deg = 40, for the fewest turns"
     std::optional<path::PlannedSpeed> speed = {};
 };
 
-/// Reads a plan of QGroundControl or ArduPilot, waypoints, `blocks` of Paparazzi's flight plan in the order of flight, or
-/// an area of GeoJSON or KML. `name` is the file as the mission names it. Throws UsageError where blocks have to be
-/// named, and InputError for a plan that cannot be read.
-NewPath path_of_plan(const std::filesystem::path& file, const std::string& name, std::vector<std::string> blocks,
-                     double airspeed_m_per_s, bool is_rotorcraft);
+/// What a new mission flies: a plan of QGroundControl or ArduPilot, waypoints, blocks of Paparazzi's flight plan, or an
+/// area of GeoJSON or KML.
+struct PlanToFly {
+    std::filesystem::path file;
+    std::string name;                                 ///< of the file, as the mission names it
+    std::vector<std::string> blocks = {};             ///< in the order of flight
+    std::optional<double> airspeed_m_per_s = {};      ///< default: the plan's, or that of the model's flights
+    std::optional<double> heading_deg = {};           ///< of the lines over an area; default: with the fewest turns
+    std::optional<path::GeodeticPosition> home = {};  ///< where it begins and ends; default: the first place
+};
+
+/// Whether a plan is an area, which is covered by lines.
+bool is_area(const std::filesystem::path& file);
+
+/// Reads a plan. Throws UsageError where blocks have to be named, and InputError for a plan that cannot be read.
+NewPath path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft);
 
 }  // namespace flightwatt::mission

@@ -36,9 +36,8 @@ void fly_plan(const PlanToFly& plan, const std::string& model_file, NewMission& 
         throw InputError({model_file}, "has no [physical] part, which predicts the power along a plan",
                          "give the ground speed that its flights flew, --airspeed M_PER_S: their mean power in calm "
                          "air is then assumed; or make a model of flights that measured their airspeed");
-    fresh.flown =
-        path_of_plan(plan.file, plan.name, plan.blocks,
-                     plan.airspeed_m_per_s.value_or(new_airspeed_m_per_s(fresh.model)), fresh.model.is_rotorcraft);
+    fresh.flown = path_of_plan(plan, plan.airspeed_m_per_s.value_or(new_airspeed_m_per_s(fresh.model)),
+                               fresh.model.is_rotorcraft);
     choose_airspeed(plan, fresh);
 }
 

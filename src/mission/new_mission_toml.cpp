@@ -76,6 +76,7 @@ void add_path(const NewMission& mission, Values& values) {
     values["path"] = mission.flown ? fmt::format("{}", fmt::join(mission.flown->keys, "\n")) : "";
     values["wind"] = mission.wind ? fmt::format("{}", mission.wind->speed_m_per_s) : "";
     values["wind_from"] = mission.wind ? fmt::format("{}", mission.wind->from_deg) : "";
+    values["reserve"] = fmt::format("{}", mission.reserve_soc_percent);
     values["packs"] = mission.packs > 1 ? fmt::format("{}", mission.packs) : "";
 }
 

@@ -53,6 +53,10 @@ std::string range_text(const mechanical::FlownRange& range) {
 
 }  // namespace
 
+FlightPath as_flown(const PlannedPath& plan, FlightPath drawn) {
+    return plan.turns ? fly_turns(drawn, plan.wind, *plan.turns).path : std::move(drawn);
+}
+
 CruisePath compute_cruise(std::shared_ptr<const PlannedPath> plan, const Wind& wind,
                           InfeasibleLegPolicy infeasible_legs, double factor) {
     const auto flown = compute_trajectory(plan->path, wind, infeasible_legs);
@@ -91,6 +95,7 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
             row.kind = "circles";
             row.length_m = units::rad_from_turns(circles->turns) * circles->radius_m;
         }
+        if (element.is_turn) row.kind = "turn";
         start_s += row.duration_s;
         row.load_factor = 0.0;
         elements.push_back(std::move(row));
@@ -117,8 +122,9 @@ mechanical::TermValues mean_terms(const mechanical::PhysicalModel& model, const 
 }
 
 std::optional<PathSpeed> best_path_speed(const PlannedPath& plan) {
-    const auto model = mechanical::speed_model(plan.power);
+    auto model = mechanical::speed_model(plan.power);
     if (!model) return std::nullopt;
+    add_turns_of_induced_drag(*model);
     const auto terms_wh = [&](const FlightPath& path) {
         const auto flown = compute_trajectory(path, plan.wind);
         auto terms = mean_terms(*model, flown);
@@ -126,10 +132,10 @@ std::optional<PathSpeed> best_path_speed(const PlannedPath& plan) {
         return terms;
     };
     const auto at_airspeed = [&](double airspeed) -> std::optional<mechanical::TermValues> {
-        auto path = plan.path;
+        auto path = drawn_path(plan);
         for (auto& element : path.elements) element.airspeed_m_per_s = airspeed;
         try {
-            return terms_wh(path);
+            return terms_wh(as_flown(plan, path));
         } catch (const InputError&) {  // the wind forbids an element, or a climb is too steep
             return std::nullopt;
         }
@@ -165,10 +171,10 @@ std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajec
         warnings.push_back(fmt::format("{}: such a turn takes a bank of {:.0f} degrees", name_of(*steepest), bank_deg));
     }
     if (load_of(*steepest) > felt_load_factor && !std::ranges::count(plan.power.terms, mechanical::PowerTerm::turn)) {
-        warnings.push_back(fmt::format(
-            "its circles take up to {:.2f} times the lift of straight flight, and the model has no term for "
-            "turns: they are taken to cost nothing",
-            load_of(*steepest)));
+        warnings.push_back(
+            fmt::format("its turns take up to {:.2f} times the lift of straight flight, and the model has no term for "
+                        "turns: they are taken to cost nothing",
+                        load_of(*steepest)));
     }
     return warnings;
 }

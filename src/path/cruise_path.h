@@ -5,6 +5,7 @@
 #include "mechanical/speed_to_fly.h"
 #include "path/path.h"
 #include "path/trajectory.h"
+#include "path/turns.h"
 
 #include <memory>
 #include <optional>
@@ -22,10 +23,18 @@ struct PiecewisePower {
 
 /// The path and wind of a cruise, and the model of its power.
 struct PlannedPath {
-    FlightPath path;
+    FlightPath path;  ///< as it is flown
     Wind wind;
     mechanical::PhysicalModel power;
+    std::optional<TurnLimits> turns = std::nullopt;  ///< absent: the path is flown as it is drawn
+    FlightPath drawn = {};                           ///< the path without the turns, if there are limits
 };
+
+/// Returns the path without its turns.
+inline const FlightPath& drawn_path(const PlannedPath& plan) { return plan.turns ? plan.drawn : plan.path; }
+
+/// Returns another path with the turns of the plan in its wind.
+FlightPath as_flown(const PlannedPath& plan, FlightPath drawn);
 
 /// A cruise whose power follows from a path instead of a curve over time. Copies are cheap.
 struct CruisePath {
@@ -48,7 +57,7 @@ double mean_power_w(const CruisePath& cruise);
 /// One element of a path as it is flown, with means over its time.
 struct PathElementResult {
     std::string name;      ///< "leg 3"
-    std::string kind;      ///< "leg", "circles" or "hold"
+    std::string kind;      ///< "leg", "circles", "turn" or "hold"
     double start_s = 0.0;  ///< since the cruise began
     double duration_s = 0.0;
     std::optional<double> length_m;  ///< length over ground

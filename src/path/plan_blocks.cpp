@@ -151,6 +151,10 @@ PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, co
     return result;
 }
 
+GeodeticPosition flight_plan_origin(std::string_view text, const std::string& file) {
+    return origin_of(load_flight_plan(text, file));
+}
+
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,
                                          const std::vector<std::string>& names) {
     const auto plan = load_flight_plan(text, file);

@@ -118,6 +118,11 @@ std::vector<Command> commands() {
           "fits/compute/tx2-detection.csv"},
          "--output"},
         {"path", "--path-from a.data", {"a.data", "a.log"}, "--output"},
+        {"check",
+         "missions/synthetic/field.geojson --model fits/mechanical/synthetic-wing.toml --battery "
+         "fits/battery/synthetic-3s.toml",
+         {"missions/synthetic/field.geojson", "fits/mechanical/synthetic-wing.toml", "fits/battery/synthetic-3s.toml"},
+         "--output"},
         {"path",
          "missions/synthetic/survey-path.toml",
          {"missions/synthetic/survey-path.toml", "fits/mechanical/synthetic-wing.toml",

@@ -94,5 +94,27 @@ TEST(PhysicalModel, KnowsWhatWasFlown) {
     EXPECT_FALSE(is_within_flown_range(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 4.0}));
 }
 
+/// Lift n times the weight takes n^2 times the induced drag.
+TEST(PhysicalModel, TurnsTakeInducedDragWhereTheyHaveNoTerm) {
+    PhysicalModel model;
+    model.terms = {PowerTerm::drag, PowerTerm::induced};
+    model.coefficients[PowerTerm::drag] = 0.01;
+    model.coefficients[PowerTerm::induced] = 90.0;
+    model.covariance = {{1e-8, 2e-6}, {2e-6, 4.0}};
+    auto turning = model;
+    add_turns_of_induced_drag(turning);
+    EXPECT_DOUBLE_EQ(power_w(turning, {15.0, 0.0, 1.0}), power_w(model, {15.0}));
+    EXPECT_NEAR(power_w(turning, {15.0, 0.0, 1.4}), 0.01 * 3375.0 + 1.4 * 1.4 * 90.0 / 15.0, 1e-9);
+    const double square = 1.4 * 1.4 / 15.0;
+    EXPECT_NEAR(coefficient_variance_w2(turning, term_values({15.0, 0.0, 1.4})),
+                1e-8 * 3375.0 * 3375.0 + 2.0 * 2e-6 * 3375.0 * square + 4.0 * square * square, 1e-9);
+    add_turns_of_induced_drag(turning);
+    EXPECT_EQ(turning.terms.size(), 3U);
+    PhysicalModel drag_alone;
+    drag_alone.terms = {PowerTerm::drag};
+    add_turns_of_induced_drag(drag_alone);
+    EXPECT_EQ(drag_alone.terms.size(), 1U);
+}
+
 }  // namespace
 }  // namespace flightwatt::mechanical

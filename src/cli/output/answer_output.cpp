@@ -325,17 +325,21 @@ std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer) {
     return lines;
 }
 
-std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
+std::string lines_text(const std::vector<AnswerLine>& lines, std::size_t columns) {
     constexpr std::size_t label_width = 10;
-    auto text = wrapped(aircraft_line(answer), columns) + "\n";
-    auto lines = answer_lines(answer);
-    if (!answer.page.empty()) lines.push_back({"Page", answer.page, ""});
+    std::string text;
     for (const auto& line : lines) {
         auto wrapped_text = wrapped(line.text + line.on_terminal, columns - label_width, "");
         boost::algorithm::replace_all(wrapped_text, "\n", "\n" + std::string(label_width, ' '));
         text += fmt::format("{:<{}}{}\n", line.label, label_width, wrapped_text);
     }
     return text;
+}
+
+std::string answer_text(const AircraftAnswer& answer, std::size_t columns) {
+    auto lines = answer_lines(answer);
+    if (!answer.page.empty()) lines.push_back({"Page", answer.page, ""});
+    return wrapped(aircraft_line(answer), columns) + "\n" + lines_text(lines, columns);
 }
 
 }  // namespace flightwatt::cli

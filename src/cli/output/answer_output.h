@@ -52,6 +52,9 @@ std::string aircraft_line(const AircraftAnswer& answer);
 /// Returns the lines below it: where nothing is answered, the reason alone.
 std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer);
 
+/// Returns labels with their texts, broken between words at `columns`.
+std::string lines_text(const std::vector<AnswerLine>& lines, std::size_t columns);
+
 /// At most ten lines for a pilot, broken between words at `columns`.
 std::string answer_text(const AircraftAnswer& answer, std::size_t columns);
 

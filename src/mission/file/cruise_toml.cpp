@@ -277,11 +277,21 @@ path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntr
     return local_position_at(path, {path.elements.size(), 0.0});
 }
 
+path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
+    path::TurnLimits limits{is_rotorcraft};
+    limits.max_bank_deg = number_in_or(between(5.0, 80.0), path, "max_bank_deg", limits.max_bank_deg);
+    limits.radius_m = optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "turn_radius_m");
+    if (limits.radius_m && is_rotorcraft)
+        throw InputError(path.where("turn_radius_m"), "a rotorcraft brakes before corners: it has no turn_radius_m",
+                         "leave it out");
+    return limits;
+}
+
 path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading,
                            const std::optional<TomlTable>& packs, MissionSetup& mission) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start", "waypoints", "flight_plan", "waypoint_order", "blocks", "radius_m",
-                              "area", "spacing_m", "heading_deg", "leg"});
+                              "area", "spacing_m", "heading_deg", "leg", "max_bank_deg", "turn_radius_m"});
     auto defaults = read_defaults(table);
     auto entries = read_entries(table, defaults, mission);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
@@ -341,6 +351,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
     plan.power = power_model(mission_table, *table, plan.wind, mission);
     const bool is_physical = mission.mechanical->physical.has_value();
+    add_turns_of_induced_drag(plan.power);
     if (is_physical) add_unexplained_power(plan.power, mission);
     for (const auto& element : plan.path.elements)
         if (is_physical && !may_be_predicted(element.airspeed_m_per_s, plan.power, mission.mechanical->is_rotorcraft))
@@ -348,6 +359,11 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
                              fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name,
                                          element.airspeed_m_per_s),
                              near_flown_hint(plan.power));
+    compute_trajectory(plan.path, plan.wind);  // refuses what its turns would hide
+    plan.turns = read_turn_limits(*table, mission.mechanical->is_rotorcraft);
+    auto turned = fly_turns(plan.path, plan.wind, *plan.turns);
+    for (const auto& note : turned.notes) mission.notes.push_back("path: " + note);
+    plan.drawn = std::exchange(plan.path, std::move(turned.path));
     const auto flown = compute_trajectory(plan.path, plan.wind);
     mission.has_steep_turn = has_steep_turn(flown);
     if (is_physical)

@@ -43,8 +43,7 @@ LocalPosition place_of(const FlightPlan& plan, const pugi::xml_node& waypoint) {
     };
     if (!attribute(waypoint, "x").empty() && !attribute(waypoint, "y").empty()) return {metres("x"), metres("y")};
     if (!attribute(waypoint, "lat").empty() && !attribute(waypoint, "lon").empty()) {
-        return to_local({degrees(plan, waypoint, "lat"), degrees(plan, waypoint, "lon")},
-                        {degrees(plan, plan.root, "lat0"), degrees(plan, plan.root, "lon0")});
+        return to_local({degrees(plan, waypoint, "lat"), degrees(plan, waypoint, "lon")}, origin_of(plan));
     }
     throw InputError(where(plan, waypoint), fmt::format("waypoint {} has no place", attribute(waypoint, "name")),
                      "expected x and y, or lat and lon");
@@ -70,6 +69,10 @@ std::optional<double> altitude_of(const FlightPlan& plan, const pugi::xml_node& 
 }
 
 }  // namespace
+
+GeodeticPosition origin_of(const FlightPlan& plan) {
+    return {degrees(plan, plan.root, "lat0"), degrees(plan, plan.root, "lon0")};
+}
 
 std::string attribute(const pugi::xml_node& node, const std::string& name) {
     if (const auto found = node.attribute(name.c_str())) return found.value();

@@ -36,6 +36,9 @@ Location where(const FlightPlan& plan, const pugi::xml_node& node);
 /// the name.
 std::size_t waypoint_number(const FlightPlan& plan, std::string_view name, const Location& asking);
 
+/// Returns lat0 and lon0. Throws InputError where they are no angles.
+GeodeticPosition origin_of(const FlightPlan& plan);
+
 /// Returns a waypoint as an entry: its place in metres from lat0 and lon0, and its altitude above the sea. Throws
 /// InputError if it has no place.
 PathEntry waypoint_entry(const FlightPlan& plan, std::size_t number);

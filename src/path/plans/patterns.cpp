@@ -139,6 +139,7 @@ void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, cons
     };
     if (nearest_m(lines.back()) < nearest_m(lines.front())) std::ranges::reverse(lines);
     bool is_back = distance_m(at, lines.front().to) < distance_m(at, lines.front().from);
+    auto named = entries.size();  // the entries of a line and of the turn before it have its number
     for (std::size_t i = 0; i < lines.size(); ++i) {
         auto& [from, to] = lines[i];
         if (is_back) std::swap(from, to);
@@ -154,6 +155,7 @@ void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, cons
         }
         fly_to(from);
         fly_to(to);
+        for (; named < entries.size(); ++named) entries[named].name += fmt::format(" (line {})", i + 1);
     }
 }
 

@@ -244,6 +244,28 @@ TEST(PathToml, FliesPlansFromTheirFirstPlaceAndAltitude) {
                 0.3 * once_s, 1e-6 * once_s);
 }
 
+TEST(PathToml, FliesTurnsWithinTheBankAndRadiusThatItStates) {
+    const auto folder = path_folder();
+    const std::string corner =
+        "[path]\nairspeed_m_per_s = 13\nleg = [{ length_m = 650, course_deg = 0 }, { length_m = 650, course_deg = 90 "
+        "}]\n";
+    const auto cruise_s = [&](const std::string& keys) {
+        auto path = corner;
+        return read(folder, "wing.toml", path.insert(path.find("leg"), keys)).setup.duration_s[Phase::cruise];
+    };
+    const auto cut_s = [](double radius_m) { return (1300.0 - radius_m * (2.0 - 3.14159265 / 2.0)) / 13.0; };
+    EXPECT_NEAR(cruise_s(""), cut_s(169.0 / 9.80665), 1e-6);
+    EXPECT_NEAR(cruise_s("max_bank_deg = 20\n"), cut_s(169.0 / 9.80665 / std::tan(20.0 * 3.14159265 / 180.0)), 1e-6);
+    EXPECT_NEAR(cruise_s("turn_radius_m = 80\n"), cut_s(80.0), 1e-6);
+    EXPECT_NEAR(cruise_s("turn_radius_m = 8\n"), cruise_s(""), 1e-9);
+    const auto narrow =
+        read(folder, "wing.toml", "[path]\nairspeed_m_per_s = 13\nleg = [{ circles = 2, radius_m = 9 }]\n");
+    ASSERT_FALSE(narrow.setup.notes.empty());
+    EXPECT_NE(narrow.setup.notes.front().find("leg 1: circles of 9 m need a bank of more than 45 degrees"),
+              std::string::npos);
+    EXPECT_FALSE(narrow.setup.has_steep_turn);
+}
+
 TEST(PathToml, FliesThePlansSpeedWhereItStatesNone) {
     const auto folder = path_folder();
     write_text(folder / "q.plan", R"({"fileType": "Plan", "version": 1, "mission": {"version": 2, "vehicleType": 1,

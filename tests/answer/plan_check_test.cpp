@@ -1,0 +1,131 @@
+#include "answer/plan_check.h"
+
+#include "base/error.h"
+#include "battery/battery_toml.h"
+#include "helpers/rejected.h"
+#include "mission/mission_file.h"
+#include "mission/prepared_mission.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::answer {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::Field;
+using testing::HasSubstr;
+
+PlanQuestion question_of(const std::filesystem::path& plan) {
+    const auto fits = test::source_dir() / "fits";
+    PlanQuestion question;
+    auto& aircraft = question.aircraft;
+    aircraft.name = "plan";
+    aircraft.mechanical = (fits / "mechanical" / "synthetic-wing.toml").string();
+    aircraft.battery = (fits / "battery" / "synthetic-3s.toml").string();
+    aircraft.model = mechanical::read_mechanical_model(aircraft.mechanical);
+    aircraft.pack = battery::read_battery(aircraft.battery);
+    question.plan.file = plan;
+    question.plan.name = plan.string();
+    question.samples = 400;
+    return question;
+}
+
+/// `km` to the north, back 60 m beside it, and home.
+PlanQuestion lines_of(double km) {
+    const auto file = test::scratch_dir() / "lines.csv";
+    test::write_text(file, fmt::format("east_m,north_m\n0,0\n0,{0}\n60,{0}\n60,0\n", km * 1000.0));
+    return question_of(file);
+}
+
+TEST(PlanCheck, AnswersYesPerhapsAndNo) {
+    EXPECT_EQ(check_plan(lines_of(2.0)).fit, PlanFit::yes);
+    EXPECT_EQ(check_plan(lines_of(60.0)).fit, PlanFit::no);
+    double km = 10.0;
+    auto check = check_plan(lines_of(km));
+    while (check.fit == PlanFit::yes && km < 60.0) check = check_plan(lines_of(km += 0.5));
+    EXPECT_EQ(check.fit, PlanFit::perhaps);
+    EXPECT_LT(*check.probability, 0.95);
+    EXPECT_TRUE(check.flown.keeps_reserve);
+}
+
+TEST(PlanCheck, AddsUpItsLegs) {
+    const auto check = check_plan(lines_of(3.0));
+    ASSERT_GE(check.legs.size(), 3U);
+    double energy_wh = 0.0;
+    double at_s = check.legs.front().start_s;
+    double soc_percent = 100.0;
+    for (const auto& leg : check.legs) {
+        EXPECT_NEAR(leg.start_s, at_s, 1e-6);
+        at_s += leg.duration_s;
+        EXPECT_LT(leg.soc_percent, soc_percent);
+        soc_percent = leg.soc_percent;
+        energy_wh += leg.energy_wh;
+    }
+    EXPECT_NEAR(check.length_m, 6060.0, 0.02 * 6060.0);
+    EXPECT_GT(check.legs.back().soc_percent, *check.flown.final_soc_percent);
+    EXPECT_LT(energy_wh, check.flown.mechanical_energy_wh);
+}
+
+TEST(PlanCheck, NamesTheLegOnWhichItFails) {
+    const auto check = check_plan(lines_of(60.0));
+    ASSERT_TRUE(check.fails_at);
+    const auto leg = std::ranges::find(check.legs, *check.fails_at, &PlanLeg::name);
+    ASSERT_NE(leg, check.legs.end());
+    EXPECT_LT(leg->soc_percent, 20.0);
+    EXPECT_TRUE(leg == check.legs.begin() || std::prev(leg)->soc_percent >= 20.0);
+}
+
+/// Each remedy that suffices does so when it is asked for.
+TEST(PlanCheck, HelpsWithWhatSuffices) {
+    auto question = lines_of(13.0);
+    question.aircraft.payload_kg = 0.3;
+    question.aircraft.takeoff_mass_kg = 1.5;
+    const auto check = check_plan(question);
+    ASSERT_NE(check.fit, PlanFit::yes);
+    const auto kinds = [](const char* kind) { return Contains(Field(&PlanRemedy::kind, kind)); };
+    EXPECT_THAT(check.remedies, kinds("pack"));
+    EXPECT_THAT(check.remedies, kinds("part"));
+    EXPECT_THAT(check.remedies, kinds("airspeed"));
+    for (const auto& remedy : check.remedies) {
+        auto changed = question;
+        if (remedy.kind == "airspeed") changed.plan.airspeed_m_per_s = remedy.value;
+        if (remedy.kind == "payload") changed.aircraft.payload_kg = remedy.value;
+        if (remedy.kind == "part" || remedy.kind == "pack") continue;
+        const auto again = check_plan(changed);
+        EXPECT_EQ(again.fit == PlanFit::yes, remedy.suffices) << remedy.text;
+        EXPECT_DOUBLE_EQ(again.probability.value(), remedy.probability.value()) << remedy.text;
+    }
+    auto pack = std::ranges::find(check.remedies, "pack", &PlanRemedy::kind);
+    EXPECT_GE(pack->probability.value(), 0.93);  // by other drawn flights
+}
+
+TEST(PlanCheck, IsNoInAWindThatForbidsIt) {
+    auto question = lines_of(1.0);
+    question.aircraft.wind = path::Wind{30.0, 0.0};
+    const auto check = check_plan(question);
+    EXPECT_EQ(check.fit, PlanFit::no);
+    EXPECT_THAT(check.reason, HasSubstr("the wind of 30 m/s"));
+}
+
+TEST(PlanCheck, CountsTheWayFromHomeAndBack) {
+    const auto file = test::scratch_dir() / "lines.csv";
+    test::write_text(file, "latitude_deg,longitude_deg\n43.46,1.27\n43.47,1.27\n");
+    auto question = question_of(file);
+    const double alone_m = check_plan(question).length_m;
+    question.plan.home = path::GeodeticPosition{43.45, 1.27};
+    EXPECT_NEAR(check_plan(question).length_m - alone_m, 2.0 * 1111.0, 30.0);
+}
+
+TEST(PlanCheck, RefusesAPlanThatCannotBeRead) {
+    const auto file = test::scratch_dir() / "empty.csv";
+    test::write_text(file, "east_m,north_m\n");
+    EXPECT_THROW(check_plan(question_of(file)), InputError);
+}
+
+}  // namespace
+}  // namespace flightwatt::answer

@@ -1,0 +1,177 @@
+#include "path/turns.h"
+
+#include "path/trajectory.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::path {
+namespace {
+
+using std::numbers::pi;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double airspeed = 13.0;
+const double radius_m = airspeed * airspeed / 9.80665;  // of a bank of 45 degrees: 17.2 m
+
+PathElement element_of(std::variant<Leg, Circles, Hold> shape, const std::string& name = "leg") {
+    PathElement element;
+    element.shape = shape;
+    element.airspeed_m_per_s = airspeed;
+    element.name = name;
+    return element;
+}
+
+FlightPath polygon(int corners, double side_m) {
+    FlightPath path;
+    for (int i = 0; i < corners; ++i)
+        path.elements.push_back(element_of(Leg{side_m, 360.0 / corners * i}, "leg " + std::to_string(i + 1)));
+    return path;
+}
+
+double flown_m(const FlightPath& path) { return compute_trajectory(path, {}).duration_s * airspeed; }
+
+LocalPosition end_of(const FlightPath& path) { return local_position_at(path, {path.elements.size(), 0.0}); }
+
+/// An arc within a corner takes the place of twice its tangent.
+TEST(Turns, CutTheCornersOfPolygons) {
+    for (const int corners : {3, 4, 6}) {
+        const auto turned = fly_turns(polygon(corners, 400.0), {}, {});
+        const double turn = 2.0 * pi / corners;
+        const double saved_m = radius_m * (2.0 * std::tan(turn / 2.0) - turn);
+        EXPECT_NEAR(flown_m(turned.path), 400.0 * corners - (corners - 1) * saved_m, 1e-6);
+        EXPECT_NEAR(std::hypot(end_of(turned.path).east_m, end_of(turned.path).north_m), 0.0, 1e-6);
+        EXPECT_TRUE(turned.notes.empty());
+    }
+}
+
+/// Lines nearer than two radii: bulbs from the end of one to the start of the next, as they are drawn with half circles
+/// or with corners.
+TEST(Turns, LeaveTheLinesOfASurvey) {
+    for (const double spacing_m : {8.0, 25.0}) {
+        FlightPath half_circles;
+        FlightPath corners;
+        for (int line = 0; line < 4; ++line) {
+            const double course_deg = line % 2 == 0 ? 0.0 : 180.0;
+            if (line > 0) {
+                half_circles.elements.push_back(
+                    element_of(Circles{spacing_m / 2.0, 0.5, line % 2 == 1, 180.0 - course_deg}, "survey"));
+                half_circles.elements.back().is_turn = true;
+                corners.elements.push_back(element_of(Leg{spacing_m, 90.0}, "way"));
+            }
+            for (auto* path : {&half_circles, &corners})
+                path->elements.push_back(element_of(Leg{300.0, course_deg}, "line " + std::to_string(line + 1)));
+        }
+        const double out = std::acos((spacing_m + 2.0 * radius_m) / (4.0 * radius_m));
+        const double all_m = 4.0 * 300.0 + 3.0 * radius_m * (pi + 4.0 * out);
+        for (const auto& drawn : {half_circles, corners}) {
+            const auto turned = fly_turns(drawn, {}, {});
+            EXPECT_NEAR(flown_m(turned.path), all_m, 1e-4) << spacing_m;
+            EXPECT_NEAR(end_of(turned.path).east_m, 3.0 * spacing_m, 1e-5);
+            EXPECT_THAT(turned.notes, ElementsAre(HasSubstr("a radius of 17.23 m (a bank of 45 degrees)")));
+        }
+    }
+}
+
+TEST(Turns, FollowHalfCirclesThatAreWideEnough) {
+    FlightPath drawn{
+        {element_of(Leg{300.0, 0.0}), element_of(Circles{20.0, 0.5, true, 0.0}), element_of(Leg{300.0, 180.0})}};
+    drawn.elements[1].is_turn = true;
+    const auto turned = fly_turns(drawn, {}, {});
+    EXPECT_NEAR(flown_m(turned.path), 600.0 + pi * 20.0, 1e-6);
+    EXPECT_TRUE(turned.notes.empty());
+}
+
+TEST(Turns, FlyOverSharpCornersAndReturn) {
+    const FlightPath there_and_back{{element_of(Leg{900.0, 60.0}, "leg 1"), element_of(Leg{900.0, 240.0}, "leg 2")}};
+    const auto turned = fly_turns(there_and_back, {}, {});
+    EXPECT_NEAR(std::hypot(end_of(turned.path).east_m, end_of(turned.path).north_m), 0.0, 1e-5);
+    const double added_m = flown_m(turned.path) - 1800.0;
+    EXPECT_GT(added_m, pi * radius_m);
+    EXPECT_LT(added_m, 2.0 * pi * radius_m);
+    EXPECT_TRUE(turned.notes.empty()) << "no limit binds: a corner so sharp is always flown over";
+}
+
+TEST(Turns, NeverBankMoreThanTheLimit) {
+    const Wind wind{6.0, 250.0};
+    FlightPath drawn = polygon(5, 30.0);
+    drawn.elements.push_back(element_of(Circles{10.0, 3.0, true, 0.0}, "leg 6"));
+    drawn.elements.push_back(element_of(Leg{12.0, 200.0}));
+    for (const double bank_deg : {25.0, 45.0}) {
+        const auto turned = fly_turns(drawn, wind, {.max_bank_deg = bank_deg});
+        const double most = 1.0 / std::cos(bank_deg * pi / 180.0);
+        for (const auto& piece : compute_trajectory(turned.path, wind).pieces)
+            EXPECT_LE(piece.motion.load_factor, most + 1e-9);
+        EXPECT_THAT(turned.notes, testing::Contains(HasSubstr("leg 6: circles of 10 m need a bank of more than")));
+    }
+}
+
+/// Without a jump of place or course from part to part.
+TEST(Turns, AreSmooth) {
+    FlightPath drawn = polygon(7, 45.0);
+    drawn.elements.push_back(element_of(Circles{60.0, 1.25, false, 100.0}));
+    drawn.elements.push_back(element_of(Leg{15.0, 0.0}));
+    drawn.elements.push_back(element_of(Leg{500.0, 260.0}));
+    const auto turned = fly_turns(drawn, {}, {});
+    double course_deg = 0.0;
+    for (const auto& element : turned.path.elements) {
+        const auto* arc = std::get_if<Circles>(&element.shape);
+        const double start_deg = arc != nullptr ? arc->start_course_deg : std::get<Leg>(element.shape).course_deg;
+        EXPECT_NEAR(std::remainder(start_deg - course_deg, 360.0), 0.0, 0.11);
+        course_deg = start_deg + (arc == nullptr ? 0.0 : (arc->to_right ? 360.0 : -360.0) * arc->turns);
+    }
+    EXPECT_NEAR(end_of(turned.path).north_m, end_of(drawn).north_m, 1e-4);
+}
+
+TEST(Turns, KeepChangesOfHeightAndTheirRates) {
+    auto drawn = polygon(4, 100.0);
+    drawn.elements[1].altitude_change_m = 10.0;
+    drawn.elements[1].climb_rate_m_per_s = 2.0;
+    drawn.elements[2].altitude_change_m = 14.0;  // fits into the leg, and not into what the arcs leave of it
+    drawn.elements[2].climb_rate_m_per_s = 2.0;
+    const auto turned = fly_turns(drawn, {}, {});
+    double climbed_m = 0.0;
+    for (const auto& piece : compute_trajectory(turned.path, {}).pieces) {
+        climbed_m += piece.time_s * piece.motion.climb_m_per_s;
+        EXPECT_LE(piece.motion.climb_m_per_s, 3.0);
+    }
+    EXPECT_NEAR(climbed_m, 24.0, 1e-6);
+}
+
+TEST(Turns, TakeTheStatedRadius) {
+    const auto turned = fly_turns(polygon(4, 400.0), {}, {.radius_m = 50.0});
+    EXPECT_NEAR(flown_m(turned.path), 1600.0 - 3.0 * 50.0 * (2.0 - pi / 2.0), 1e-6);
+}
+
+/// A rotorcraft stops and starts, and between short legs never reaches its speed: numerical integration agrees.
+TEST(Turns, CostARotorcraftItsBraking) {
+    const double acceleration = 2.5;
+    for (const double side_m : {200.0, 12.0}) {
+        const auto turned =
+            fly_turns({{element_of(Leg{side_m, 0.0}), element_of(Leg{side_m, 180.0})}}, {}, {.is_rotorcraft = true});
+        double time_s = 0.0;
+        const double step_m = side_m / 2e6;
+        for (double at_m = step_m / 2.0; at_m < side_m; at_m += step_m) {
+            const double near_m = std::min(at_m, side_m - at_m);
+            time_s += step_m / std::min(airspeed, std::sqrt(2.0 * acceleration * near_m));
+        }
+        EXPECT_NEAR(compute_trajectory(turned.path, {}).duration_s / (2.0 * time_s), 1.0, 0.003) << side_m;
+    }
+    const auto slight =
+        fly_turns({{element_of(Leg{500.0, 0.0}), element_of(Leg{500.0, 3.0})}}, {}, {.is_rotorcraft = true});
+    EXPECT_NEAR(compute_trajectory(slight.path, {}).duration_s, 1000.0 / airspeed + airspeed / acceleration, 0.3);
+}
+
+TEST(Turns, SlowARotorcraftOnNarrowCircles) {
+    const auto turned = fly_turns({{element_of(Circles{5.0, 2.0})}}, {}, {.is_rotorcraft = true});
+    EXPECT_NEAR(turned.path.elements.front().airspeed_m_per_s, std::sqrt(9.80665 * 5.0), 1e-9);
+    EXPECT_THAT(turned.notes, ElementsAre(HasSubstr("circles of 5 m are flown at 7 m/s")));
+}
+
+}  // namespace
+}  // namespace flightwatt::path
