@@ -20,7 +20,7 @@
 /// against it.
 namespace flightwatt::answer {
 
-/// Folder of an answer unless --output names one, and the names of its files beside those of a batch.
+/// Folder of an answer unless --output names one, and the names of its files, with those of a batch.
 inline constexpr auto default_folder = "flightwatt-out";
 inline constexpr auto pack_name = "answer-pack.toml";
 inline constexpr auto mission_name = "answer-mission.toml";

@@ -17,6 +17,8 @@
 namespace flightwatt::mission {
 namespace {
 
+constexpr auto way_to_path = "way to the path";
+
 constexpr std::size_t most_flights = 1000;
 constexpr double parts_tried = 200.0;  ///< of the cruise, after which it may be left; the best is then narrowed
 constexpr double min_part_s = 1.0;     ///< that a pack has to fly
@@ -116,7 +118,7 @@ class PackDivider {
         const double sign = is_home ? -1.0 : 1.0;
         const auto there = local_position_at(plan_->path, position) - packs_.home;
         path::PathElement way;
-        way.name = is_home ? "way home" : "way to the path";
+        way.name = is_home ? "way home" : way_to_path;
         way.airspeed_m_per_s = elements[std::min(position.element, elements.size() - 1)].airspeed_m_per_s;
         for (const auto& element : path_between(plan_->path, {}, position).elements)
             way.altitude_change_m += sign * element.altitude_change_m;
@@ -145,8 +147,14 @@ class PackDivider {
         auto& elements = plan.path.elements;
         if (part.start_s > 0.0) elements.insert(elements.begin(), way(from, false));
         if (goes_home) elements.push_back(way(to, true));
+        if (plan_->turns && !plan_->turns->is_rotorcraft)  // those of the ways; the others stay as they are
+            plan.path = fly_turns(plan.path, plan.wind, *plan_->turns).path;
         set_cruise_path(setup, plan);
-        return part.start_s > 0.0 ? compute_trajectory(plan.path, plan.wind).element_s.front() : 0.0;
+        const auto flown = compute_trajectory(plan.path, plan.wind);
+        double way_s = 0.0;
+        for (std::size_t i = 0; i < plan.path.elements.size() && plan.path.elements[i].name == way_to_path; ++i)
+            way_s += flown.element_s[i];
+        return way_s;
     }
 
     /// Whether a part lands with so much more than the reserve, with the least energy demand.

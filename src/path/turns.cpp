@@ -15,7 +15,7 @@ namespace flightwatt::path {
 namespace {
 
 constexpr double max_cut_deg = 120.0;  // of a corner: beyond, the arc would pass more than a radius before it
-constexpr double straight_deg = 0.1;   // of a corner: below, there is none
+constexpr double straight_deg = 0.1;   // of a corner: below, the path is straight
 constexpr double same_place_m = 1e-3;
 // As autopilots of multicopters have them by default: WPNAV_ACCEL and WPNAV_RADIUS of ArduPilot.
 constexpr double acceleration_m_per_s2 = 2.5;

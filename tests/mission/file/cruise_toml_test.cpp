@@ -156,15 +156,14 @@ from_deg = 0
 TEST(PathToml, DurationAndPowerFollowFromThePath) {
     const auto folder = path_folder();
     const auto mission = read(folder, "wing.toml", out_and_back);
-    const double climb = 30.0 / (900.0 / 17.0);  // nearly: the climb takes a little of the airspeed
-    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 900.0 / 9.0 + 900.0 / 17.0, 0.05);
+    const double legs_s = 900.0 / 9.0 + 900.0 / 17.0;
+    EXPECT_GT(mission.setup.duration_s[Phase::cruise], legs_s);
+    EXPECT_LT(mission.setup.duration_s[Phase::cruise], legs_s + 12.0);  // a turn of 180 degrees
     EXPECT_TRUE(mission.setup.duration_is_stated[Phase::cruise]);
     ASSERT_TRUE(mission.setup.cruise_path && mission.setup.cruise_level);
     const auto& pieces = *mission.setup.cruise_path->pieces;
-    ASSERT_EQ(pieces.time_s.size(), 3U);
+    ASSERT_GE(pieces.time_s.size(), 3U);
     EXPECT_NEAR(pieces.energy_j[1] / pieces.time_s[1], 21.97, 1e-9);
-    EXPECT_NEAR((pieces.energy_j[2] - pieces.energy_j[1]) / (pieces.time_s[2] - pieces.time_s[1]), 21.97 + 8.0 * climb,
-                0.01);
     EXPECT_NEAR(mission.setup.cruise_level->mean_w, mean_power_w(*mission.setup.cruise_path), 1e-12);
     EXPECT_NEAR(*mission.setup.cruise_level->sd_w, 0.04 * mission.setup.cruise_level->mean_w, 0.02);
     EXPECT_TRUE(mission.setup.notes.empty());
@@ -179,8 +178,7 @@ TEST(PathToml, AssumesTheMeanPowerInCalmAirWithoutAModelThatKnowsMotion) {
     const auto folder = path_folder();
     const auto calm = out_and_back.substr(0, out_and_back.find("[wind]"));
     const auto mission = read(folder, "plain.toml", calm);
-    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 1800.0 / 13.0,
-                0.2);  // the climb takes a little of the airspeed
+    EXPECT_NEAR(mission.setup.duration_s[Phase::cruise], 1800.0 / 13.0 + 4.2, 0.3);  // with a turn of 180 degrees
     EXPECT_NEAR(mean_power_w(*mission.setup.cruise_path), cruise_w(mission), 1e-9);
     ASSERT_EQ(mission.setup.notes.size(), 1U);
     EXPECT_NE(mission.setup.notes.front().find("the flight in wind is unknown"), std::string::npos);
@@ -197,12 +195,13 @@ TEST(PathToml, ReadsWaypointsFromFiles) {
     write_text(folder / "plan.xml", R"(<flight_plan lat0="43" lon0="1" alt="200"><waypoints>
         <waypoint name="A" x="500" y="0"/><waypoint name="B" x="500" y="650"/></waypoints></flight_plan>)");
     const std::string path = "[path]\nairspeed_m_per_s = 13\n";
-    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.csv\"\n").setup.duration_s[Phase::cruise], 200.0,
-                1e-9);
+    const double corner_s = 13.0 / 9.80665 * (2.0 - 3.14159265358979 / 2.0);  // that its arc saves
+    EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.csv\"\n").setup.duration_s[Phase::cruise],
+                200.0 - corner_s, 1e-6);
     EXPECT_NEAR(read(folder, "wing.toml", path + "waypoints = \"w.geojson\"\n").setup.duration_s[Phase::cruise],
                 1111.32 / 13.0, 0.01);
     const std::string plan = "altitude_m = 200\nflight_plan = \"plan.xml\"\nwaypoint_order = [\"A\", \"B\"]\n";
-    EXPECT_NEAR(read(folder, "wing.toml", path + plan).setup.duration_s[Phase::cruise], 1150.0 / 13.0, 1e-9);
+    EXPECT_NEAR(read(folder, "wing.toml", path + plan).setup.duration_s[Phase::cruise], 1150.0 / 13.0 - corner_s, 1e-6);
     EXPECT_NE(rejected([&] {
                   read(folder, "wing.toml", path + "waypoints = \"none.csv\"\n");
               }).find("m.toml:5:1: waypoints: there is no file"),
@@ -224,7 +223,9 @@ TEST(PathToml, FliesPlansFromTheirFirstPlaceAndAltitude) {
     };
     const std::string plan = "flight_plan = \"plan.xml\"\nblocks = ";
     EXPECT_NEAR(length_m(plan + "[\"There\"]\n"), 650.0, 1.0);
-    EXPECT_NEAR(length_m(plan + "[\"Round\", \"There\"]\nradius_m = 60\n"), 4.0 * 3.14159 * 60.0 + 60.0 + 650.0, 2.0);
+    const double around_m = length_m(plan + "[\"Round\", \"There\"]\nradius_m = 60\n");
+    EXPECT_GT(around_m, 4.0 * 3.14159 * 60.0 + 60.0 + 650.0);  // and the turns towards the centre and the leg
+    EXPECT_LT(around_m, 4.0 * 3.14159 * 60.0 + 60.0 + 650.0 + 2.0 * 3.14159 * 17.3);
     EXPECT_EQ(read(folder, "wing.toml", path + plan + "[\"There\"]\n").setup.notes,
               std::vector<std::string>{"path: block 'There': not followed: exceptions to 'Home'"});
     const std::string area = "area = \"field.geojson\"\nspacing_m = 50\nheading_deg = 0\n";
@@ -304,9 +305,10 @@ TEST(PathToml, FliesOtherExtents) {
                 1e-9);
     const std::string home =
         "[path]\nairspeed_m_per_s = 13\nreturn_to_start = true\nleg = [{ length_m = 1300, course_deg = 0 }]\n";
-    EXPECT_NEAR(read(folder, "wing.toml", home).setup.duration_s[Phase::cruise], 200.0, 1e-9);
-    EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).setup.duration_s[Phase::cruise], 100.0,
-                1e-9);
+    constexpr double turn_s = 4.2;  // of 180 degrees
+    EXPECT_NEAR(read(folder, "wing.toml", home).setup.duration_s[Phase::cruise], 200.0 + turn_s, 0.1);
+    EXPECT_NEAR(read(folder, "wing.toml", home, {.return_after_m = 650.0}).setup.duration_s[Phase::cruise],
+                100.0 + turn_s, 0.1);
     EXPECT_THROW(read(folder, "wing.toml", home, {.cruise_s = 100.0}), NoResultError);
 }
 
