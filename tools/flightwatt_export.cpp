@@ -22,6 +22,7 @@
 #include "exchange/simulator_parameters.h"
 #include "mission/mission_file.h"
 #include "mission/prepared_mission.h"
+#include "report/latex_tables.h"
 #include "report/report.h"
 #include "stages.h"
 

@@ -9,6 +9,7 @@
 #include "report/figure_files.h"
 #include "report/outline.h"
 #include "report/page.h"
+#include "report/progress.h"
 #include "report/report.h"
 #include "stages.h"
 
@@ -146,7 +147,8 @@ int flightwatt::stages::report_stage(int argc, char** argv) {
         "report", "[OUT] [MISSION.toml...] -o report.html",
         R"(Writes one HTML page, to be opened offline, of the folder OUT of flightwatt batch (flights, model,
 validation, battery) and of missions (software, schedules, quality of service). --figures writes figures for
-papers: .vl.json (Vega-Lite with the data), .svg (by node) and .pdf (where rsvg-convert is). The model is the batch's own, with the bands that the batch stored.)"};
+papers: .vl.json (Vega-Lite with the data), .svg (by node) and .pdf (where rsvg-convert is). The model is
+the batch's own, with the bands that the batch stored.)"};
     stage.next = [](const auto&) { return "open it in a browser"; };
     stage.json_schema = [] { return cli::json_schema({report::summary_schema()}); };
     stage.examples = {"flightwatt report my missions/first.toml -o report.html",

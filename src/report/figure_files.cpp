@@ -39,8 +39,8 @@ bool run_program(std::vector<std::string> command) {
 /// A new folder for files in the making, which is removed with them.
 class ScratchFolder {
   public:
-    explicit ScratchFolder(const std::filesystem::path& beside)
-        : folder_(beside / fmt::format(".figures-{}.tmp", ::getpid())) {
+    explicit ScratchFolder(const std::filesystem::path& parent)
+        : folder_(parent / fmt::format(".figures-{}.tmp", ::getpid())) {
         make_directories(folder_);
     }
     ~ScratchFolder() {

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "report/plain_answers.h"
+#include "report/document/plain_answers.h"
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>

@@ -303,8 +303,8 @@ Json schedule_notes(Missions missions) {
     return {{"text",
              "Energies are the demand of the whole mission, also where the battery is empty before its end. "
              "Probabilities are of 1000 flights drawn from the uncertainty of the models and of [uncertainty], 200 for "
-             "a policy that plans in flight: 95 % intervals of at most 3 or 7 percent points; without a known "
-             "uncertainty there are none."},
+             "a policy that plans in flight: 95 % intervals of at most 3 or 7 percent points; unknown "
+             "where no uncertainty is."},
             {"sources", std::move(sources)}};
 }
 

@@ -1,7 +1,7 @@
 // The JSON documents that the screens show, as the stages print them (docs/reference). Nothing else is shown: every
 // number is of a stage, with its unit in its key, and every sentence was worded by the program.
 
-/// A 95 % interval, if the key does not say otherwise.
+/// A 95 % interval, unless its key names another.
 export interface Interval {
   low: number;
   high: number;
@@ -158,7 +158,7 @@ export interface AnswerDocument extends AircraftAnswer {
   headline: string;
   /// The lines of the terminal: a label, the value (or "unknown"), and what it rests on.
   lines: { label: string; value: string; basis: string }[];
-  /// Texts to copy into an autopilot, each with its name, or the reason why there is none.
+  /// Texts to copy into an autopilot, each with its name, or the reason why it is absent.
   pastes: { name: string; text: string }[];
 }
 

@@ -1,4 +1,4 @@
-#include "report/plain_answers.h"
+#include "report/document/plain_answers.h"
 
 #include "base/text.h"
 
