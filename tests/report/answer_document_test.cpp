@@ -51,11 +51,12 @@ TEST(AnswerDocument, HasTheLinesOfTheTerminalWithoutItsFiles) {
 
 TEST(AnswerDocument, SetsValuesOffFromWhatTheyRestOn) {
     const auto json = answer_json(some_answer(), {{"ArduPilot", "BATT_LOW_MAH 3\n"}});
-    EXPECT_EQ(json["lines"][0], Json::parse(R"({"label": "Cruise", "value": "413 W", "basis": " (measured on 3 flights)"
-})"));
+    const Json line{{"label", "Cruise"}, {"value", "413 W"}, {"basis", " (measured on 3 flights)"}};
+    EXPECT_EQ(json["lines"][0], line);
     EXPECT_EQ(json["lines"][2]["value"], "unknown");
-EXPECT_EQ(json["pastes"], Json::parse(R"([{"name": "ArduPilot", "text": "BATT_LOW_MAH 3\n"}])"));
-EXPECT_EQ(json["time_in_air_s"]["value"], 612.0) << "as flightwatt answer prints it";
+    const Json paste{{"name", "ArduPilot"}, {"text", "BATT_LOW_MAH 3\n"}};
+    EXPECT_EQ(json["pastes"], Json::array({paste}));
+    EXPECT_EQ(json["time_in_air_s"]["value"], 612.0) << "as flightwatt answer prints it";
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ Findings findings_of(std::vector<SimulatedMission> missions) {
     return findings;
 }
 
-Findings findings_of(const std::vector<std::string>& names) { return findings_of(simulated(names)); }
+Findings findings_of_files(const std::vector<std::string>& names) { return findings_of(simulated(names)); }
 
 TEST(MissionsDocument, HasCardCurveBandAndScheduleOfEachMission) {
     LatexTables tables;
-    const auto findings = findings_of({"invariant-32fps-448bit", "phased", "computing-only"});
+    const auto findings = findings_of_files({"invariant-32fps-448bit", "phased", "computing-only"});
     const auto json = missions_json(findings, tables);
     ASSERT_EQ(json.size(), 3U);
     EXPECT_EQ(json[0]["outcome"], "fails");
@@ -66,9 +66,9 @@ TEST(MissionsDocument, DrawsThePathWithTheChargeAlongIt) {
 }
 
 TEST(MissionsHeadline, CountsOutcomesTheWorstFirst) {
-    EXPECT_EQ(missions_headline(findings_of({"invariant-32fps-448bit", "phased", "computing-only"})),
+    EXPECT_EQ(missions_headline(findings_of_files({"invariant-32fps-448bit", "phased", "computing-only"})),
               "One of three missions runs empty");
-    auto both = findings_of({"computing-only", "computing-only"});
+    auto both = findings_of_files({"computing-only", "computing-only"});
     EXPECT_EQ(missions_headline(both), "Both missions land as planned");
     both.missions.front().mission.setup.has_steep_turn = true;
     EXPECT_EQ(missions_headline(both), "One of two missions flies turns that it may not be able to");

@@ -38,13 +38,11 @@ TEST(PlainAnswers, HaveMissionsAndFlightsAsTables) {
 
 TEST(PlainAnswers, BeginWithTheAnswer) {
     auto document = some_document();
-    document["answer"] = Json::parse(
-        R"({"headline": "7: 3 flights", "lines": [{"label": "Time", "value": "10 min", "basis": " (measured)"
-}]
-})");
+    const Json line{{"label", "Time"}, {"value", "10 min"}, {"basis", " (measured)"}};
+    document["answer"] = {{"headline", "7: 3 flights"}, {"lines", Json::array({line})}};
     const auto html = plain_answers(document);
-EXPECT_THAT(html, testing::StartsWith("<h1>7: 3 flights</h1>\n<dl>\n<dt>Time</dt><dd>10 min (measured)</dd>"));
-EXPECT_THAT(html, HasSubstr("<h2>&lt;two&gt; missions</h2>"));
+    EXPECT_THAT(html, testing::StartsWith("<h1>7: 3 flights</h1>\n<dl>\n<dt>Time</dt><dd>10 min (measured)</dd>"));
+    EXPECT_THAT(html, HasSubstr("<h2>&lt;two&gt; missions</h2>"));
 }
 
 }  // namespace
