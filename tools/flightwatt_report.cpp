@@ -71,17 +71,20 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     return inputs;
 }
 
-/// Where figures are wanted as files.
-void write_figure_files(const cli::StageCall& call, const ReportArguments& arguments,
-                        const std::vector<report::Figure>& figures) {
+/// Where figures are wanted as files; returns their names.
+std::vector<std::string> write_figure_files(const cli::StageCall& call, const ReportArguments& arguments,
+                                            const report::ReportContent& content) {
     const auto& folder = arguments.figures;
-    if (!folder) return;
+    if (!folder) return {};
     const auto files =
-        write_figures(figures, report::figure_tools(report::web_folder()), *folder, figure_layout(arguments));
-    cli::note(call, fmt::format("{} figures in {}: .vl.json{}{}", files.figures, *folder, files.has_svg ? ", .svg" : "",
-                                files.has_pdf ? ", .pdf" : ""));
-    if (!files.has_svg) cli::warn(call, "node is not there: no figure was rendered");
-    if (files.has_svg && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
+        write_figures(content.document, report::figure_tools(report::web_folder()), *folder, figure_layout(arguments));
+    if (files.names.empty())
+        cli::warn(call, "node is not there: no figure was made");
+    else
+        cli::note(call, fmt::format("{} figures in {}: .vl.json, .svg{}", files.names.size(), *folder,
+                                    files.has_pdf ? ", .pdf" : ""));
+    if (!files.names.empty() && !files.has_pdf) cli::warn(call, "rsvg-convert is not there: no PDF was made");
+    return files.names;
 }
 
 /// The command that gives the same, with names of files without their folders: the page goes to others.
@@ -123,12 +126,12 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
     std::optional<report::FrontEnd> front_end;  // read first: missing files are an error before any work
     if (wants_page) front_end = report::read_front_end(report::web_folder());
     if (arguments.figures) report::figure_tools(report::web_folder());
-    input.with_figures = call.json || arguments.figures;
+    input.with_figures = arguments.figures.has_value();
     input.command = command_of(call, arguments);
     auto content = make_report(input, log_of(call));
     if (arguments.title)
         for (const auto* key : {"title", "name"}) content.document[key] = valid_utf8(*arguments.title);
-    write_figure_files(call, arguments, content.figures);
+    content.summary["figures"] = write_figure_files(call, arguments, content);
     if (wants_page) cli::write_result(call, page_html(content.document, *front_end));
     if (!call.json) return cli::ok;
     content.summary["title"] = content.document["title"];

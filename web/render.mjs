@@ -1,12 +1,15 @@
-// Renders FOLDER/NAME.vl.json to FOLDER/NAME.svg with Vega, without a browser: node render.mjs FOLDER WIDTH HEIGHT NAME...
-// (in pixels; HEIGHT is a maximum, 0: none)
+// Draws the figures of a report for papers: node render.mjs FOLDER WIDTH HEIGHT FONT writes FOLDER/NAME.vl.json, with the
+// theme, and FOLDER/NAME.svg of each figure of FOLDER/document.json, by Vega without a browser. WIDTH and HEIGHT are in
+// pixels: WIDTH 0 is 720 with the theme's type, and any other sets all type at 8 points; HEIGHT is a maximum, 0: none. FONT
+// is sans or serif.
 import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
 import vm from "node:vm";
+import { figuresOf } from "./figures.mjs";
 
 const [folder, ...rest] = process.argv.slice(2);
-const [width, height] = rest.slice(0, 2).map(Number);
-const names = rest.slice(2);
+const [stated, height] = rest.slice(0, 2).map(Number);
+const width = stated || 720;
 const here = path.dirname(new URL(import.meta.url).pathname);
 const script = (name) => readFile(path.join(here, name), "utf8");
 for (const library of ["vega", "vega-lite"]) vm.runInThisContext(await script(`node_modules/${library}/build/${library}.min.js`));
@@ -153,8 +156,20 @@ async function render(wanted, room, factor) {
   return { svg, wide, tall };
 }
 
-for (const name of names) {
-  const spec = await withMinutes(JSON.parse(await readFile(path.join(folder, `${name}.vl.json`), "utf8")));
+/** The theme for papers. */
+function inTypeOfPapers(theme) {
+  const sized = (part, key) => (stated && /fontSize$/i.test(key) && typeof part === "number" ? 32 / 3 : part !== null && typeof part === "object" && !Array.isArray(part) ? Object.fromEntries(Object.entries(part).map(([name, value]) => [name, sized(value, name)])) : part);
+  const config = sized(theme, "");
+  if (stated) config.style["panel-name"].fontWeight = "normal";
+  if (rest[2] === "serif") config.font = "'Times New Roman', 'Liberation Serif', 'DejaVu Serif', serif";
+  return config;
+}
+
+const theme = inTypeOfPapers(JSON.parse(await script("theme.json")).light);
+for (const { id: name, spec: plain } of figuresOf(JSON.parse(await readFile(path.join(folder, "document.json"), "utf8")))) {
+  const whole = { ...plain, config: theme };
+  await writeFile(path.join(folder, `${name}.vl.json`), `${JSON.stringify(whole)}\n`);
+  const spec = await withMinutes(whole);
   // The size of axes and legends is known after drawing: a figure of another size is drawn again with less or more room.
   let room = width;
   let factor = 1;

@@ -16,6 +16,7 @@
 #include <boost/process/io.hpp>
 #include <boost/process/system.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace flightwatt::report {
 namespace {
@@ -35,27 +36,27 @@ bool run_program(std::vector<std::string> command) {
     return code == 0;
 }
 
+/// A new folder for files in the making, which is removed with them.
+class ScratchFolder {
+  public:
+    explicit ScratchFolder(const std::filesystem::path& beside)
+        : folder_(beside / fmt::format(".figures-{}.tmp", ::getpid())) {
+        make_directories(folder_);
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const std::filesystem::path& path() const { return folder_; }
+
+  private:
+    std::filesystem::path folder_;
+};
+
 /// Vega uses CSS pixels of 1/96 inch.
 constexpr double px_per_pt = 96.0 / 72.0;
-constexpr double default_width_px = 720.0;
-
-/// The theme for papers: with a width all type has 8 points, as figures are not scaled.
-VegaJson in_type_of_papers(const VegaJson& theme, const FigureLayout& layout) {
-    constexpr double type_pt = 8.0;
-    auto values = theme.flatten();
-    for (auto& [path, value] : values.items())
-        if (layout.width_pt && (path.ends_with("FontSize") || path.ends_with("/fontSize"))) value = type_pt * px_per_pt;
-    if (layout.width_pt) values["/style/panel-name/fontWeight"] = "normal";
-    if (layout.is_serif) values["/font"] = "'Times New Roman', 'Liberation Serif', 'DejaVu Serif', serif";
-    return values.unflatten();
-}
-
-/// The specification with the light theme, for any Vega-Lite.
-std::string standalone(const Figure& figure, const VegaJson& light_theme) {
-    auto spec = figure.spec;
-    spec["config"] = light_theme;
-    return spec.dump(1, ' ', false, VegaJson::error_handler_t::replace) + "\n";
-}
 
 }  // namespace
 
@@ -69,29 +70,34 @@ std::filesystem::path figure_tools(const std::filesystem::path& web) {
     return web;
 }
 
-FigureFiles write_figures(std::span<const Figure> figures, const std::filesystem::path& tools,
-                          const std::filesystem::path& folder, const FigureLayout& layout) {
-    for (const auto& figure : figures)
-        for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (figure.id + ending));
-    make_directories(folder);
+FigureFiles write_figures(const Json& document, const std::filesystem::path& tools, const std::filesystem::path& folder,
+                          const FigureLayout& layout) {
     constexpr double landscape = 0.75;  // of the width
-    const auto theme = in_type_of_papers(VegaJson::parse(read_file(tools / "theme.json")).at("light"), layout);
-    FigureFiles files{figures.size()};
-    const double width_px = layout.width_pt ? *layout.width_pt * px_per_pt : default_width_px;
+    const double width_px = layout.width_pt.value_or(0.0) * px_per_pt;
     const double height_px = layout.height_pt.value_or(landscape * layout.width_pt.value_or(0.0)) * px_per_pt;
-    std::vector<std::string> render{"node", (tools / "render.mjs").string(), folder.string(),
-                                    fmt::format("{}", width_px), fmt::format("{}", height_px)};
-    for (const auto& figure : figures) {
-        write_file_atomically(folder / (figure.id + ".vl.json"), standalone(figure, theme));
-        render.push_back(figure.id);  // only these: the folder may contain others
+    make_directories(folder);
+    const ScratchFolder scratch(folder);
+    write_file_atomically(scratch.path() / "document.json",
+                          document.dump(-1, ' ', false, Json::error_handler_t::replace));
+    FigureFiles files;
+    if (!run_program({"node", (tools / "render.mjs").string(), scratch.path().string(), fmt::format("{}", width_px),
+                      fmt::format("{}", height_px), layout.is_serif ? "serif" : "sans"}))
+        return files;
+    for (const auto& entry : std::filesystem::directory_iterator(scratch.path()))
+        if (entry.path().extension() == ".svg") files.names.push_back(entry.path().stem().string());
+    std::ranges::sort(files.names);
+    files.has_pdf = true;
+    for (const auto& name : files.names) {
+        const auto file = (scratch.path() / name).string();
+        files.has_pdf =
+            files.has_pdf && run_program({"rsvg-convert", "--format", "pdf", "--output", file + ".pdf", file + ".svg"});
     }
-    files.has_svg = run_program(render);
-    files.has_pdf = files.has_svg;
-    for (const auto& figure : figures) {
-        if (!files.has_pdf) break;
-        const auto file = (folder / figure.id).string();
-        files.has_pdf = run_program({"rsvg-convert", "--format", "pdf", "--output", file + ".pdf", file + ".svg"});
-    }
+    for (const auto& name : files.names)
+        for (const auto* ending : {".vl.json", ".svg", ".pdf"}) register_output(folder / (name + ending));
+    for (const auto& name : files.names)
+        for (const std::string ending : {".vl.json", ".svg", ".pdf"})
+            if (std::error_code absent; std::filesystem::exists(scratch.path() / (name + ending), absent))
+                std::filesystem::rename(scratch.path() / (name + ending), folder / (name + ending));
     return files;
 }
 

@@ -1,19 +1,17 @@
 #pragma once
 
-#include "report/figure.h"
+#include "record/json_type.h"
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
+#include <vector>
 
 namespace flightwatt::report {
 
-/// Number of figures, and the kinds of files that were written for each.
+/// The names of figures, and the kinds of files that were written for each.
 struct FigureFiles {
-    std::size_t figures = 0;
-    bool has_svg = false;
+    std::vector<std::string> names;  ///< empty where node is not installed
     bool has_pdf = false;
 };
 
@@ -28,11 +26,11 @@ struct FigureLayout {
 /// Returns the folder web/ with what draws figures. Throws InputError for a missing library, with how to install it.
 std::filesystem::path figure_tools(const std::filesystem::path& web);
 
-/// Writes FOLDER/ID.vl.json of every figure, and ID.svg by node and ID.pdf by rsvg-convert if these programs are
-/// installed. `tools` has theme.json and render.mjs. Throws OutputError if the folder cannot be written or a program
+/// Writes FOLDER/NAME.vl.json and NAME.svg of every figure of a report's document by node (web/render.mjs), and NAME.pdf
+/// by rsvg-convert, if these programs are installed. Throws OutputError if the folder cannot be written or a program
 /// fails.
-FigureFiles write_figures(std::span<const Figure> figures, const std::filesystem::path& tools,
-                          const std::filesystem::path& folder, const FigureLayout& layout = {});
+FigureFiles write_figures(const Json& document, const std::filesystem::path& tools, const std::filesystem::path& folder,
+                          const FigureLayout& layout = {});
 
 /// Parses "3.5in", "89mm", "9cm" or "252pt" and returns points. Throws UsageError "--OPTION TEXT: ..." for another
 /// text, and for lengths outside of 1.5 to 20 inches.

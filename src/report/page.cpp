@@ -2,10 +2,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "report/figure.h"
 #include "report/plain_answers.h"
-
-#include <map>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
@@ -20,7 +17,7 @@ std::string inline_script(const std::string& text) {
 
 /// The page web/NAME.html, with each "{{FIELD}}" replaced by its value.
 std::string filled_page(std::string_view name, const std::map<std::string_view, std::string_view>& values) {
-    auto left = web_templates().at(name);
+    auto left = web_pages().at(name);
     std::string html;
     for (auto at = left.find("{{"); at != std::string_view::npos; at = left.find("{{")) {
         const auto end = left.find("}}", at);

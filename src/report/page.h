@@ -3,13 +3,18 @@
 #include "record/json_type.h"
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 
 namespace flightwatt::report {
 
 /// Returns the folder web/: $FLIGHTWATT_WEB, or ../share/flightwatt/web from the running program's folder. Throws
 /// InputError if it is absent.
 std::filesystem::path web_folder();
+
+/// Returns the pages of web, built into the program, by their names without endings.
+const std::map<std::string_view, std::string_view>& web_pages();
 
 /// The front end as node web/build.mjs bundles it.
 struct FrontEnd {

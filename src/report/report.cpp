@@ -18,7 +18,6 @@
 #include "report/document/flights_document.h"
 #include "report/document/missions_document.h"
 #include "report/document/model_document.h"
-#include "report/figures/figures.h"
 #include "report/flight_trends.h"
 
 #include <algorithm>
@@ -45,10 +44,6 @@ struct Draft {
     Findings findings = {};
     std::vector<mechanical::MechanicalModel> models = {};  ///< the batch's, if it has one
 
-    void add_figure(Figure figure, std::string section) {
-        figure.section = std::move(section);
-        content.figures.push_back(std::move(figure));
-    }
     void add_fact(const char* name, std::string text) {
         content.document["facts"].push_back({{"name", name}, {"text", std::move(text)}});
     }
@@ -75,18 +70,10 @@ std::string origin_of_model(const BatchContent& batch) {
                        any_synthetic(batch.flights) ? " SYNTHETIC flights are simulated, not flown." : "");
 }
 
-void add_model(Draft& page, const ReportModel& model, const std::string& id) {
-    auto& models = page.content.document["models"];
-    models.push_back(model_json(model));
-    if (page.input.with_figures)
-        page.add_figure(model_figure(models.back(), id + "-curves"),
-                        "Mechanical model: " + valid_utf8(model.model.name));
-}
-
 /// The flights' model with its validation.
 void add_fit(Draft& page, const BatchContent& batch) {
     auto& notes = page.findings.notes;
-    auto& [document, figures, latex, summary] = page.content;
+    auto& [document, latex, summary] = page.content;
     if (!batch.fit) {
         notes.emplace_back("There is no model of these flights: the batch could not fit them.");
         return;
@@ -100,7 +87,7 @@ void add_fit(Draft& page, const BatchContent& batch) {
     model.table_one = cli::model_table(
         fitted, published ? std::optional(mechanical::read_mechanical_model(*published)) : std::nullopt,
         mechanical::TableIntervals::present);
-    add_model(page, model, "model");
+    document["models"].push_back(model_json(model));
     LatexTables of_physical;
     if (batch.measured.size() >= 2) document["physical"] = physical_json(batch.measured, of_physical);
     auto curves = fitted;
@@ -112,8 +99,6 @@ void add_fit(Draft& page, const BatchContent& batch) {
             "The model is not validated: that needs 2 flights, of which each is predicted by the other.");
         return;
     }
-    if (page.input.with_figures && !document["physical"].is_null())
-        page.add_figure(physical_figure(document["physical"], "physical-power"), "Power from airspeed and climb");
     auto& validated = page.findings.validated;
     const auto chosen = mechanical::validated_flights(batch.measured);
     validated = leave_one_out(chosen, batch.fit->options, page.log.progress("fits"));
@@ -123,9 +108,6 @@ void add_fit(Draft& page, const BatchContent& batch) {
                         chosen.size(), batch.measured.size()));
     if (const auto rejected = remove_rejected(validated); !rejected.empty()) notes.push_back(rejected + ".");
     document["validation"] = validation_json(validated, any_synthetic(batch.flights), latex);
-    if (page.input.with_figures)
-        page.add_figure(validation_figure(document["validation"], "validation-errors"),
-                        "Validation against the baselines");
 }
 
 /// Flights, model, validation and battery.
@@ -139,7 +121,7 @@ void add_batch(Draft& page, const BatchContent& batch) {
             options.capacity_ah = page.input.capacity_ah;
             return identify_for_report(batch.flights, options, max_battery_flights, page.input.missions);
         });
-    auto& [document, figures, latex, summary] = page.content;
+    auto& [document, latex, summary] = page.content;
     LatexTables of_flights;
     std::swap(latex, of_flights);
     add_fit(page, batch);
@@ -153,15 +135,11 @@ void add_batch(Draft& page, const BatchContent& batch) {
         make_flights(batch, found ? &*found : nullptr, page.input.with_figures, latex, page.log.progress("flights"));
     document["flights"] = std::move(flights.flights);
     document["exclusions"] = std::move(flights.exclusions);
-    for (auto& figure : flights.figures) page.add_figure(std::move(figure), "Flights");
     latex.add(of_flights.text);
     if (!found) return;
     page.findings.pack = found->identified;
-    auto& json = document["battery"] = battery_json(*found, latex);
+    document["battery"] = battery_json(*found, latex);
     for (const auto& group : group_exclusions(found->exclusions)) document["exclusions"].push_back(record_json(group));
-    if (!found->identified || !page.input.with_figures) return;
-    page.add_figure(voltage_figure(json, "battery-voltage"), "Battery");
-    page.add_figure(open_circuit_figure(json, "battery-open-circuit"), "Battery");
 }
 
 /// Trends of aircraft and packs over their flights' dates, where there are any.
@@ -187,20 +165,12 @@ void add_trends(Draft& page, const BatchContent& batch) {
         return;  // without dates, packs have no trend either: saves their time
     auto ledger = add_state_of_health(flights, std::move(uses), {page.input.capacity_ah, max_battery_flights});
     std::ranges::move(notes, std::back_inserter(ledger.notes));
-    const auto trends = estimate_trends(flights);
-    const auto& json = page.content.document["trends"] = trends_json(trends, ledger, page.content.latex);
-    std::set<std::string> aircraft;
-    for (const auto& trend : trends)
-        if (trend.answer.trend) aircraft.insert(trend.aircraft);
-    std::size_t number = 0;
-    for (const auto& name : aircraft)
-        if (page.input.with_figures)
-            page.add_figure(trends_figure(json, name, fmt::format("trends-{}", ++number)), "Packs and trends");
+    page.content.document["trends"] = trends_json(estimate_trends(flights), ledger, page.content.latex);
 }
 
 void add_missions(Draft& page) {
     const auto& missions = page.input.missions;
-    auto& [document, figures, latex, summary] = page.content;
+    auto& [document, latex, summary] = page.content;
     std::vector<std::string> files;  // the page goes to others: without the folders
     files.reserve(missions.size());
     for (const auto& mission : missions)
@@ -218,22 +188,12 @@ void add_missions(Draft& page) {
             return mission::read_mission(one.mission.setup.file, reading);
         }));
     }
-    std::vector<Figure> maps;
-    document["quality"] = quality_json(flown, page.input.with_figures ? &maps : nullptr);
-    for (auto& map : maps) page.add_figure(std::move(map), "Quality of service");
-    std::size_t number = 0;
+    document["quality"] = quality_json(flown, page.input.with_figures);
     for (const auto& model : other_models(flown, page.models))
-        add_model(page, {model, "The missions' model.", {}, table_one(model)},
-                  fmt::format("mission-model-{}", ++number));
+        document["models"].push_back(model_json({model, "The missions' model.", {}, table_one(model), true}));
     document["software"] = software_json(flown);
     document["schedules"] = schedule_notes(flown);
     document["missions"] = missions_json(page.findings, latex);
-    if (!page.input.with_figures) return;
-    number = 0;
-    for (const auto& software : document["software"])
-        page.add_figure(profile_figure(software, fmt::format("profile-{}", ++number)), "Computing profile");
-    page.add_figure(schedule_figure(document["missions"], "schedules-soc"),
-                    "Schedules, and what differs between drawn flights");
 }
 
 /// The missions on the power that the batch's flights measured.
@@ -248,16 +208,6 @@ std::vector<mission::Replay> replay_missions(const ReportInput& input, const Bat
     return std::move(result.replays);
 }
 
-struct FigureOutput {
-    std::string id, section, description;
-};
-
-Fields<FigureOutput> record_fields(const FigureOutput*) {
-    using R = FigureOutput;
-    return {field("id", &R::id, "file name of the figure"), field("section", &R::section, "section of the page"),
-            field("description", &R::description, "description of the figure")};
-}
-
 /// JSON of the page.
 struct PageOutput {
     std::string title;
@@ -265,7 +215,7 @@ struct PageOutput {
     std::vector<std::string> aircraft;
     std::string prediction;
     std::vector<std::string> warnings, notes;
-    std::vector<FigureOutput> figures;
+    std::vector<std::string> figures;
 };
 
 Fields<PageOutput> record_fields(const PageOutput*) {
@@ -276,7 +226,7 @@ Fields<PageOutput> record_fields(const PageOutput*) {
             field("prediction", &R::prediction, "errors of the models for hold-out flights"),
             field("warnings", &R::warnings, "warnings of the fit"),
             field("notes", &R::notes, "missing contents"),
-            field("figures", &R::figures, "figures")};
+            field("figures", &R::figures, "names of the files of --figures, without their endings")};
 }
 
 Json summary_json(const Draft& page, const BatchContent& batch) {
@@ -288,8 +238,6 @@ Json summary_json(const Draft& page, const BatchContent& batch) {
                       .notes = page.findings.notes,
                       .figures = {}};
     for (const auto& [name, text] : aircraft_lines(batch.flights)) output.aircraft.push_back(name + ": " + text);
-    for (const auto& figure : page.content.figures)
-        output.figures.push_back({figure.id, figure.section, figure.description});
     for (std::size_t i = 0; i < page.findings.missions.size(); ++i)
         output.missions.push_back({&page.findings.missions[i], &page.findings.assessments[i]});
     return record_json(output);
@@ -310,7 +258,7 @@ std::string time_of_report() {
 
 ReportContent make_report(const ReportInput& input, const ReportLog& log) {
     Draft page{input, log};
-    auto& [document, figures, latex, summary] = page.content;
+    auto& [document, latex, summary] = page.content;
     document = empty_document();
     page.add_fact("computed", time_of_report());
     page.add_fact("by", "flightwatt " FLIGHTWATT_VERSION);

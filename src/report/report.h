@@ -4,7 +4,6 @@
 #include "mission/packs.h"
 #include "record/record.h"
 #include "report/batch_content.h"
-#include "report/figure.h"
 #include "report/latex_tables.h"
 #include "report/outline.h"
 #include "report/progress.h"
@@ -17,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-/// The report of a folder of flightwatt batch and of missions: the document of a page, figures, and LaTeX tables.
+/// The report of a folder of flightwatt batch and of missions: the document of a page and of figures, and LaTeX tables.
 namespace flightwatt::report {
 
 /// Receives the report's warnings and progress.
@@ -41,15 +40,14 @@ struct ReportInput {
     std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery
     bool with_replay = false;                        ///< with the missions replayed on the flights
     std::vector<Outline> outlines = {};              ///< drawn below the flown tracks
-    bool with_figures = false;                       ///< also makes figures for papers
+    bool with_figures = false;                       ///< the document is also for write_figures()
     Json answer = nullptr;                           ///< of flightwatt LOG... (AnswerDocument)
     std::string command = {};                        ///< that makes the page
 };
 
 /// The content of a report.
 struct ReportContent {
-    Json document;                ///< ReportDocument of web/app/src/documents.ts
-    std::vector<Figure> figures;  ///< if they are wanted
+    Json document;  ///< ReportDocument of web/app/src/documents.ts
     LatexTables latex;
     Json summary;  ///< JSON of --json, with the title
 };

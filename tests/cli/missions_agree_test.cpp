@@ -88,13 +88,13 @@ void expect_one_answer(const std::filesystem::path& folder) {
     EXPECT_NEAR(csv.compute_wh, simulated.at("compute_energy_wh"), 2e-4 * csv.energy_wh);
     EXPECT_NEAR(csv.last_s, simulated.at("duration_s"), 1e-6);
     EXPECT_NEAR(csv.last_percent, simulated.at("final_soc_percent"), 1e-6);
-    const auto page = test::run_shell("sed -n 's/.*id=\"data-missions\">\\(.*\\)<.script>.*/\\1/p' page.html", folder);
-    const auto shown = Json::parse(page.out).at(0);
-    EXPECT_NEAR(shown.at("duration_s"), simulated.at("duration_s"), 0.051);
+    const auto page = test::run_shell("sed -n 's/.*id=\"document\">\\(.*\\)<.script>.*/\\1/p' page.html", folder);
+    const auto shown = Json::parse(page.out).at("missions").at(0);
+    EXPECT_NEAR(shown.at("summary").at("duration_s"), simulated.at("duration_s"), 0.051);
     if (simulated.at("feasible")) {
-        EXPECT_NEAR(shown.at("landing"), simulated.at("final_soc_percent"), 0.051);
+        EXPECT_NEAR(shown.at("landing_soc_percent"), simulated.at("final_soc_percent"), 0.051);
     } else {
-        EXPECT_TRUE(shown.at("landing").is_null()) << "it does not land";
+        EXPECT_TRUE(shown.at("landing_soc_percent").is_null()) << "it does not land";
     }
 }
 

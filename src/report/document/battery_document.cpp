@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "cli/output/battery_output.h"
 #include "report/document/columns.h"
-#include "report/figure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,9 @@
 #include "report/document/columns.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
@@ -48,6 +51,31 @@ Json column_of(const std::vector<double>& values) {
         column.push_back(rounded_json(value, digits - before_point));
     }
     return column;
+}
+
+std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const std::vector<double>& values,
+                                       std::size_t columns) {
+    constexpr std::size_t rows_per_column = 4;
+    std::vector<std::size_t> rows(time_s.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    if (rows.size() <= rows_per_column * columns) return rows;
+    const double duration_s = time_s.back() - time_s.front();
+    const auto column_of = [&](std::size_t i) {
+        const double part = (time_s[i] - time_s.front()) / duration_s;
+        return std::min(columns - 1, static_cast<std::size_t>(part * static_cast<double>(columns)));
+    };
+    std::vector<std::size_t> kept;
+    for (auto first = rows.begin(); first != rows.end();) {
+        const auto end =
+            std::find_if(first, rows.end(), [&](std::size_t i) { return column_of(i) != column_of(*first); });
+        const auto [min_at, max_at] =
+            std::minmax_element(first, end, [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+        std::vector<std::size_t> chosen{*first, *min_at, *max_at, *std::prev(end)};
+        std::ranges::sort(chosen);
+        std::ranges::unique_copy(chosen, std::back_inserter(kept));
+        first = end;
+    }
+    return kept;
 }
 
 std::string deflated_base64(std::string_view text) {

@@ -8,15 +8,12 @@
 #include "report/document/aircraft_panel.h"
 #include "report/document/columns.h"
 #include "report/document/track_document.h"
-#include "report/figures/figures.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <regex>
-#include <set>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
@@ -51,10 +48,21 @@ bool is_end_of_log(const flight::Track& clock, double time_s) {
     return time_s - clock.time_s.front() < near_s || clock.time_s.back() - time_s < near_s;
 }
 
-constexpr std::size_t plot_columns = 250;  // pixels
-constexpr int decimals = 2;                // of times and values
+/// A page of more flights compresses their details, which are of fewer pixel columns: it is small and opens as quickly.
+constexpr std::size_t max_plain_flights = 20;
+constexpr std::size_t plot_columns = 250;
+constexpr std::size_t plot_columns_of_many = 100;
+constexpr int time_decimals = 2;
 
-Json chosen(const std::vector<double>& values, const std::vector<std::size_t>& rows) {
+/// Decimals with which the largest value has four digits.
+int decimals_of(const std::vector<double>& values) {
+    double largest = 0.0;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    constexpr int max_decimals = 3;
+    return largest < 1.0 ? max_decimals : std::max(0, max_decimals - static_cast<int>(std::log10(largest)));
+}
+
+Json chosen(const std::vector<double>& values, const std::vector<std::size_t>& rows, int decimals) {
     Json::array_t column;
     column.reserve(rows.size());
     for (const auto i : rows) column.push_back(rounded_json(values[i], decimals));
@@ -62,10 +70,11 @@ Json chosen(const std::vector<double>& values, const std::vector<std::size_t>& r
 }
 
 /// The samples of a track that draw it, under the name of its values; null without any.
-Json track_columns(const flight::Track& track, const char* key) {
+Json track_columns(const flight::Track& track, const char* key, std::size_t columns) {
     if (track.empty()) return nullptr;
-    const auto rows = downsample_m4(track.time_s, track.value, plot_columns);
-    return {{"time_s", chosen(track.time_s, rows)}, {key, chosen(track.value, rows)}};
+    const auto rows = downsample_m4(track.time_s, track.value, columns);
+    return {{"time_s", chosen(track.time_s, rows, time_decimals)},
+            {key, chosen(track.value, rows, decimals_of(track.value))}};
 }
 
 /// The model's power at these times: of each complete phase its curve, scaled to the phase's duration.
@@ -79,14 +88,15 @@ Json model_power(const ReportFlight& flight, const mechanical::MechanicalModel& 
                 time_scaled_model(model.phases[span.phase], span.duration_s(), mechanical::PhaseTimeScaling::scaled);
             for (std::size_t i = 0; i < time_s.size(); ++i)
                 if (time_s[i] >= span.start.time_s && time_s[i] <= span.end.time_s)
-                    power[i] = rounded_json(power_w(curve, time_s[i] - span.start.time_s), decimals);
+                    power[i] =
+                        rounded_json(power_w(curve, time_s[i] - span.start.time_s), decimals_of({power_w(curve, 0.0)}));
         }
     }
     return power;
 }
 
-Json power_columns(const ReportFlight& flight, const mechanical::MechanicalModel* model) {
-    auto columns = track_columns(flight.data.power_w, "power_w");
+Json power_columns(const ReportFlight& flight, const mechanical::MechanicalModel* model, std::size_t count) {
+    auto columns = track_columns(flight.data.power_w, "power_w", count);
     if (columns.is_null()) return columns;
     columns["model_power_w"] =
         model == nullptr ? Json() : model_power(flight, *model, columns["time_s"].get<std::vector<double>>());
@@ -239,31 +249,31 @@ std::vector<NamedEdge> name_edges(const ReportFlight& flight) {
     return edges;
 }
 
-Json flight_detail(const ReportFlight& flight, const mechanical::MechanicalModel* model, const ReportBattery* battery) {
+Json flight_detail(const ReportFlight& flight, const mechanical::MechanicalModel* model, const ReportBattery* battery,
+                   std::size_t columns) {
     const auto& data = flight.data;
     return {{"log", std::filesystem::path(flight.log).filename().string()},  // the page goes to others
             {"power_source", data.power_w.source},
             {"circuits", json_list<flight::CircuitShare>(circuit_shares(data, flight.phases))},
             {"phases", phases_of(flight.phases)},
             {"edges", json_list<NamedEdge>(name_edges(flight))},
-            {"power", power_columns(flight, model)},
-            {"altitude", track_columns(data.altitude_m, "altitude_m")},
-            {"throttle", track_columns(data.throttle_percent, "throttle_percent")},
-            {"voltage", track_columns(data.voltage_v, "voltage_v")},
-            {"current", track_columns(data.current_a, "current_a")},
-            {"airspeed", track_columns(data.airspeed_m_per_s, "airspeed_m_per_s")},
+            {"power", power_columns(flight, model, columns)},
+            {"altitude", track_columns(data.altitude_m, "altitude_m", columns)},
+            {"throttle", track_columns(data.throttle_percent, "throttle_percent", columns)},
+            {"voltage", track_columns(data.voltage_v, "voltage_v", columns)},
+            {"current", track_columns(data.current_a, "current_a", columns)},
+            {"airspeed", track_columns(data.airspeed_m_per_s, "airspeed_m_per_s", columns)},
             {"track", track_json(flight, battery)}};
 }
 
-FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* battery, bool with_figures,
+FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* battery, bool for_figures,
                              LatexTables& tables, const Progress& progress) {
-    constexpr std::size_t max_plain_flights = 20;  // a page of more is small in this way, and opens as quickly
+    const bool are_many = batch.flights.size() > max_plain_flights;
+    const auto columns = are_many && !for_figures ? plot_columns_of_many : plot_columns;
     const auto& flights = batch.flights;
     const auto* model = batch.fit ? &batch.fit->model : nullptr;
-    const auto ids = flight_ids(flights);
     std::vector<std::vector<SortieRow>> sorties(flights.size());
     Json::array_t rows(flights.size());
-    std::vector<std::optional<Figure>> figures(flights.size());
     std::atomic<std::size_t> done = 0;
     for_each_in_parallel(flights.size(), [&](std::size_t f) {
         if (progress) progress(done++, flights.size());
@@ -271,11 +281,8 @@ FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* bat
         if (flight.rejected.empty()) sorties[f] = sortie_rows(flight);
         rows[f] = row_of(flight, sorties[f]);
         if (!flight.rejected.empty()) return;
-        auto detail = flight_detail(flight, model, battery);
-        if (with_figures && !detail["power"].is_null())
-            figures[f] = flight_figure(flight.name, detail, ids[f] + "-power");
-        if (flights.size() > max_plain_flights)
-            detail = deflated_base64(detail.dump(-1, ' ', false, Json::error_handler_t::replace));
+        auto detail = flight_detail(flight, model, battery, columns);
+        if (are_many) detail = deflated_base64(detail.dump(-1, ' ', false, Json::error_handler_t::replace));
         rows[f]["detail"] = std::move(detail);
     });
     FlightsDocument document{std::move(rows)};
@@ -285,22 +292,7 @@ FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* bat
     const auto exclusions = excluded(flights);
     tables.add({table_of(exclusions), "Flights and phases that are not used", "tab:excluded"});
     document.exclusions = json_list<ExclusionGroup>(exclusions);
-    for (auto& figure : figures)
-        if (figure) document.figures.push_back(std::move(*figure));
     return document;
-}
-
-std::vector<std::string> flight_ids(std::span<const ReportFlight> flights) {
-    constexpr std::size_t max_chars = 60;
-    static const std::regex other_chars("[^0-9A-Za-z_]+");
-    std::vector<std::string> ids;
-    std::set<std::string> taken;
-    for (const auto& flight : flights) {
-        auto id = "flight-" + std::regex_replace(flight.name.substr(0, max_chars), other_chars, "-");
-        if (!taken.insert(id).second) id += fmt::format("-{}", ids.size() + 1);
-        ids.push_back(std::move(id));
-    }
-    return ids;
 }
 
 }  // namespace flightwatt::report

@@ -2,7 +2,6 @@
 
 #include "report/batch_content.h"
 #include "report/document/battery_document.h"
-#include "report/figure.h"
 #include "report/progress.h"
 
 #include <span>
@@ -32,22 +31,20 @@ Fields<NamedEdge> record_fields(const NamedEdge*);
 /// Returns the edges of a flight's phases; the common edge of two phases once.
 std::vector<NamedEdge> name_edges(const ReportFlight& flight);
 
-/// Returns the tracks of an accepted flight over time (FlightDetail of web/app/src/documents.ts). `model` and `battery`
-/// may be null.
-Json flight_detail(const ReportFlight& flight, const mechanical::MechanicalModel* model, const ReportBattery* battery);
+/// Returns the tracks of an accepted flight over time, as they are drawn on so many pixel columns (FlightDetail of
+/// web/app/src/documents.ts). `model` and `battery` may be null.
+Json flight_detail(const ReportFlight& flight, const mechanical::MechanicalModel* model, const ReportBattery* battery,
+                   std::size_t columns);
 
 /// The flights of a document.
 struct FlightsDocument {
     Json flights = Json::array();
     Json exclusions = Json::array();
-    std::vector<Figure> figures = {};  ///< of the flights with power, if they are wanted
 };
 
-/// Makes the flights of a document. The details of more than 20 flights are compressed. `battery` may be null.
-FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* battery, bool with_figures,
+/// Makes the flights of a document. The details of more than 20 flights are compressed, and coarser except
+/// `for_figures`. `battery` may be null.
+FlightsDocument make_flights(const BatchContent& batch, const ReportBattery* battery, bool for_figures,
                              LatexTables& tables, const Progress& progress = {});
-
-/// Returns unique names of files: "flight-20_07_03__12_17_45".
-std::vector<std::string> flight_ids(std::span<const ReportFlight> flights);
 
 }  // namespace flightwatt::report

@@ -8,7 +8,6 @@
 #include "report/document/columns.h"
 #include "report/document/mission_card.h"
 #include "report/document/quality_of_service.h"
-#include "report/figures/figures.h"
 
 #include <algorithm>
 #include <array>
@@ -324,7 +323,7 @@ Json software_json(Missions missions) {
     return all;
 }
 
-Json quality_json(Missions missions, std::vector<Figure>* figures) {
+Json quality_json(Missions missions, bool with_figures) {
     auto grids = Json::array();
     for (const auto* simulated : first_of_each(missions, map_key)) {
         const auto& setup = simulated->mission.setup;
@@ -351,8 +350,9 @@ Json quality_json(Missions missions, std::vector<Figure>* figures) {
                          {"missions", same},
                          {"flights_drawn", grid_flights_drawn},
                          {"cells", std::move(cells)}});
-        if (figures != nullptr)
-            figures->push_back(quality_figure(*qos_map(setup), fmt::format("quality-{}", grids.size())));
+        if (!with_figures) continue;
+        const auto map = *qos_map(setup);
+        grids.back()["map"] = {{"x", map.x.nodes}, {"y", map.y.nodes}, {"soc_percent", column_of(map.soc_percent)}};
     }
     return grids;
 }

@@ -3,7 +3,6 @@
 #include "mission/packs.h"
 #include "mission/replay.h"
 #include "report/document/findings.h"
-#include "report/figure.h"
 #include "report/latex_tables.h"
 
 #include <span>
@@ -25,9 +24,9 @@ Json schedule_notes(std::span<const SimulatedMission> missions);
 /// Returns the profiled power of each software (SoftwareProfile).
 Json software_json(std::span<const SimulatedMission> missions);
 
-/// Returns a grid over the quality of service for each flight (QualityGrid), and adds Fig. 4 of each to the figures if
-/// these are wanted.
-Json quality_json(std::span<const SimulatedMission> missions, std::vector<Figure>* figures);
+/// Returns a grid over the quality of service for each flight (QualityGrid), with the map of Fig. 4 if figures are
+/// wanted.
+Json quality_json(std::span<const SimulatedMission> missions, bool with_figures);
 
 /// Returns the models of missions that are not in `shown`.
 std::vector<mechanical::MechanicalModel> other_models(std::span<const SimulatedMission> missions,

@@ -20,6 +20,7 @@ struct ReportModel {
     std::string origin;                                  ///< "Fitted to these flights."
     flight::PerPhase<mechanical::CurveBand> bands = {};  ///< 95 % bands of the mean; unknown if without times
     std::optional<TextTable> table_one = {};
+    bool is_of_missions = false;
 };
 
 /// Returns a model with its curves and Table I.

@@ -4,7 +4,7 @@
 #include "compute/compute_model.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
-#include "report/figure.h"
+#include "report/document/columns.h"
 
 #include <algorithm>
 #include <cmath>

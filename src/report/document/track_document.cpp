@@ -134,9 +134,8 @@ Json marks_of(const ReportFlight& flight, const Positions& positions, const Repo
         const auto charge = charge_percent(battery, flight.name, time_s);
         const auto after = std::min(std::ranges::lower_bound(positions.time_s, time_s), positions.time_s.end() - 1);
         Json mark{{"text", fmt::format("{:.0f} min{}", minutes, charge ? fmt::format(": {:.0f} %", *charge) : "")}};
-        for (const auto& [key, column] :
-             columns_at(positions, {static_cast<std::size_t>(after - positions.time_s.begin())}).items())
-            mark[key] = column.is_null() ? column : column.front();
+        const auto columns = columns_at(positions, {static_cast<std::size_t>(after - positions.time_s.begin())});
+        for (const auto& [key, column] : columns.items()) mark[key] = column.is_null() ? column : column.front();
         marks.push_back(std::move(mark));
     }
     return marks;

@@ -299,11 +299,15 @@ export interface QualityGrid {
   y_name: string;
   x: number[];
   y: number[];
+  /// Values of further parameters: "planner rate 5"; may be empty.
+  others: string;
   reserve_soc_percent: number;
   /// The missions with this flight, by their numbers in `missions`.
   missions: number[];
   /// Number of drawn flights of each probability.
   flights_drawn: number;
+  /// For the paper's Fig. 4, with --figures only: charge at landing on a finer grid, x varying fastest.
+  map?: { x: number[]; y: number[]; soc_percent: (number | null)[] };
   /// x varies fastest.
   cells: {
     landing_soc_percent: number | null;
@@ -349,6 +353,7 @@ export interface PackMission extends Omit<MissionSummary, "schedule" | "delivere
     return_from: string;
     return_east_m: number | null;
     return_north_m: number | null;
+    runs: { phase: PhaseName; from_s: number; to_s: number; run: Record<string, Record<string, number>> }[];
   })[];
 }
 
@@ -393,8 +398,8 @@ export interface SortieRow {
   mean_power_w: PerPhase<number | null>;
 }
 
-/// Tracks over time, in the time of the log, each reduced to what draws the same line on 250 pixel columns; null: the
-/// log has none.
+/// Tracks over time, in the time of the log, each reduced to what draws the same line on 250 pixel columns (100 on a
+/// page of more than 20 flights); null: the log has none.
 export interface FlightDetail {
   /// File of the log.
   log: string;
@@ -466,6 +471,8 @@ export interface FittedPhase {
 }
 
 export interface ModelDocument {
+  /// It is of missions, and not of the flights.
+  is_of_missions: boolean;
   /// "Fitted by flightwatt batch to the flights above (order 3, weights: ...)."
   origin: string;
   description: string;
@@ -523,7 +530,7 @@ export interface PhysicalDocument {
   /// Parts of flights of about 30 s, less the power of their climb and turns.
   bins: { flight: string; start_s: number[]; airspeed_m_per_s: number[]; level_power_w: number[]; climb_m_per_s: number[]; power_w: number[] }[];
   /// Best speeds with the ends of their intervals, cut at the drawn airspeeds.
-  best: { purpose: string; airspeed_m_per_s: number | null; power_w: number; low_m_per_s: number; high_m_per_s: number }[];
+  best: { purpose: string; text: string; airspeed_m_per_s: number | null; power_w: number; low_m_per_s: number; high_m_per_s: number }[];
 }
 
 export interface ModelScore {
@@ -581,8 +588,21 @@ export interface IdentifiedBattery {
     battery_temperature_c: number | null;
     battery_start_c: number | null;
   }[];
-  leave_one_out: { flight: string; voltage_rms_mv: number; extrapolated_percent: number }[] | null;
-  folds: number | null;
+  leave_one_out:
+    | {
+        flight: string;
+        initial_depletion_ah: number;
+        voltage_rms_mv: number;
+        load_voltage_rms_mv: number;
+        load_mean_error_mv: number;
+        load_interval_95_mv: number;
+        load_interval_95_holds_percent: number;
+        forecast_error_mv: number | null;
+        updated_forecast_error_mv: number | null;
+        ahead_30_s_error_mv: number;
+        extrapolated_percent: number;
+      }[]
+    | null;
 }
 
 export interface BatteryDocument {

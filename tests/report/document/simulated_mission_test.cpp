@@ -1,14 +1,13 @@
 // Missions as the report flies them.
 
-#include "report/sections/simulated_mission.h"
+#include "report/document/simulated_mission.h"
 
 #include "base/error.h"
 #include "helpers/paper_missions.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
 #include "mission/mission_read_options.h"
-#include "report/html.h"
-#include "report/sections/mission_card.h"
+#include "report/document/mission_card.h"
 
 #include <memory>
 

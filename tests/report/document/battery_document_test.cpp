@@ -1,9 +1,8 @@
-#include "report/sections/battery_section.h"
+#include "report/document/battery_document.h"
 
 #include "base/error.h"
 #include "flight/select.h"
 #include "helpers/synthetic_discharge.h"
-#include "report/figures/flight_figures.h"
 
 #include <algorithm>
 
@@ -34,37 +33,42 @@ battery::IdentificationOptions with_capacity(const battery::Battery& pack) {
     return options;
 }
 
-TEST(BatterySection, ShowsVoltagesParametersAndTheCurve) {
+Json json_of(const ReportBattery& battery) {
+    LatexTables tables;
+    return battery_json(battery, tables);
+}
+
+TEST(BatteryDocument, ShowsVoltagesParametersAndTheCurve) {
     const auto pack = test::known_pack();
     const auto battery = identify_for_report(flights_on(pack, 2), with_capacity(pack), 12);
     ASSERT_TRUE(battery.identified) << battery.no_result_reason;
     EXPECT_EQ(battery.leave_one_out.size(), 2U);
-    const auto section = battery_section(battery);
-    ASSERT_EQ(section.figures.size(), 2U);
-    EXPECT_EQ(section.figures[0].spec["concat"].size(), 2U);
-    const auto rows = section.figures[0].spec["concat"][0]["layer"][0]["data"]["values"].get<std::string>();
-    for (const auto* curve : {",measured", ",model"}) EXPECT_THAT(rows, HasSubstr(curve));
-    const auto knots = section.figures[1].spec["data"]["values"].get<std::string>();
-    EXPECT_EQ(static_cast<std::size_t>(std::count(knots.begin(), knots.end(), '\n')),
+    LatexTables tables;
+    const auto json = battery_json(battery, tables);
+    ASSERT_EQ(json["voltages"].size(), 2U);
+    const auto& voltages = json["voltages"][0];
+    EXPECT_GT(voltages["time_s"].size(), 100U);
+    for (const auto* curve : {"measured_v", "model_v"}) EXPECT_EQ(voltages[curve].size(), voltages["time_s"].size());
+    EXPECT_EQ(json["open_circuit"]["low_v"].size(),
               battery.identified->battery.thevenin->open_circuit.soc_percent.size());
-    EXPECT_THAT(section.html, HasSubstr("resistance [ohm]"));
-    EXPECT_THAT(section.html, HasSubstr("identified from voltage, current and charge of 2 flights"));
-    EXPECT_THAT(section.html, testing::Not(HasSubstr("Not used for the battery")));
-    EXPECT_THAT(section.latex, HasSubstr("\\label{tab:battery-flights}"));
-    EXPECT_THAT(section.latex, testing::Not(HasSubstr("\\label{tab:battery-excluded}"))) << "all are used";
+    EXPECT_EQ(json["identified"]["flights"].size(), 2U) << "as flightwatt battery prints it";
+    EXPECT_THAT(json["parameters"]["rows"].dump(), HasSubstr("resistance [ohm]"));
+    EXPECT_THAT(json["text"].get<std::string>(), HasSubstr("identified from voltage, current and charge of 2 flights"));
+    EXPECT_THAT(tables.text, HasSubstr("\\label{tab:battery-flights}"));
+    EXPECT_THAT(tables.text, testing::Not(HasSubstr("\\label{tab:battery-excluded}"))) << "all are used";
 }
 
-TEST(BatterySection, LimitsTheFlightsAndSaysSo) {
+TEST(BatteryDocument, LimitsTheFlightsAndSaysSo) {
     const auto pack = test::known_pack();
     const auto battery = identify_for_report(flights_on(pack, 5), with_capacity(pack), 2);
     EXPECT_EQ(battery.usable, 5U);
     ASSERT_EQ(battery.records.size(), 2U);
     EXPECT_EQ(battery.records[0].flight, "synthetic_1");
     EXPECT_EQ(battery.records[1].flight, "synthetic_5");
-    EXPECT_THAT(battery_section(battery).html, HasSubstr("among the 5 usable ones"));
+    EXPECT_THAT(json_of(battery)["text"].get<std::string>(), HasSubstr("among the 5 usable ones"));
 }
 
-TEST(BatterySection, SaysWhyThereIsNone) {
+TEST(BatteryDocument, SaysWhyThereIsNone) {
     const auto pack = test::known_pack();
     auto computed = flight_on(pack, 1);
     computed.data.current_origin = flight::CurrentOrigin::throttle;
@@ -78,12 +82,12 @@ TEST(BatterySection, SaysWhyThereIsNone) {
     const std::vector<ReportFlight> flights{computed, voltless, faulty, rejected};
     const auto battery = identify_for_report(flights, {}, 12);
     EXPECT_FALSE(battery.identified);
-    const auto section = battery_section(battery);
-    EXPECT_TRUE(section.figures.empty());
-    for (const auto* reason :
-         {"was not identified", "computed from throttle", "has no voltage", "is &lt;faulty&gt;", "no flight in it"}) {
-        EXPECT_THAT(section.html, HasSubstr(reason));
-    }
+    LatexTables tables;
+    const auto json = battery_json(battery, tables);
+    EXPECT_TRUE(json["identified"].is_null());
+    EXPECT_EQ(json["no_result_reason"], "no flight has both voltage and current");
+    for (const auto* reason : {"computed from throttle", "has no voltage", "no flight in it"})
+        EXPECT_THAT(tables.text, HasSubstr(reason));
 }
 
 /// A mission on the pack that was identified from flights, with the capacity that was given for it.
@@ -96,16 +100,16 @@ mission::MissionVariant mission_on(const std::vector<ReportFlight>& flights, dou
     return mission;
 }
 
-TEST(BatterySection, IsAboutThePackOfTheMissions) {
+TEST(BatteryDocument, IsAboutThePackOfTheMissions) {
     const auto flights = flights_on(test::known_pack(), 2);
     const std::vector missions{mission_on(flights, 10.0), mission_on(flights, 10.0)};
     const auto battery = identify_for_report(flights, {}, 12, missions);
     ASSERT_TRUE(battery.identified);
     EXPECT_EQ(battery.identified->battery.capacity_ah, 10.0);
-    const auto html = battery_section(battery).html;
-    EXPECT_THAT(html, HasSubstr("The capacity is that of the missions&#39; pack &#39;pack&#39;."));
-    EXPECT_THAT(html, HasSubstr("the capacity of 10 Ah contradicts the flights"));
-    EXPECT_THAT(html, testing::Not(HasSubstr("with --capacity")));
+    const auto text = json_of(battery).dump();
+    EXPECT_THAT(text, HasSubstr("The capacity is that of the missions' pack 'pack'."));
+    EXPECT_THAT(text, HasSubstr("the capacity of 10 Ah contradicts the flights"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("with --capacity")));
     battery::IdentificationOptions other;
     other.capacity_ah = 5.0;
     EXPECT_THROW(identify_for_report(flights, other, 12, missions), UsageError) << "a page has one pack";
@@ -113,7 +117,7 @@ TEST(BatterySection, IsAboutThePackOfTheMissions) {
     EXPECT_TRUE(identify_for_report(flights, other, 12, missions).identified);
 }
 
-TEST(BatterySection, StatesTheOneCapacityThatTheMissionsPackHasByItsFlights) {
+TEST(BatteryDocument, StatesTheOneCapacityThatTheMissionsPackHasByItsFlights) {
     const auto flights = flights_on(test::known_pack(), 4);
     mission::Mission mission;
     const auto by_all = identify_for_report(flights, {}, 12);
@@ -126,7 +130,7 @@ TEST(BatterySection, StatesTheOneCapacityThatTheMissionsPackHasByItsFlights) {
     EXPECT_EQ(identified.flight_estimate, mission.setup.battery.flight_estimate);
 }
 
-TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
+TEST(BatteryDocument, IsNotAboutPacksOfOtherFlights) {
     const auto flights = flights_on(test::known_pack(), 2);
     const std::vector missions{mission_on({flight_on(test::known_pack(), 7)}, 10.0)};
     const auto battery = identify_for_report(flights, {}, 12, missions);
@@ -138,14 +142,14 @@ TEST(BatterySection, IsNotAboutPacksOfOtherFlights) {
     EXPECT_NE(by_flights.identified.value().battery.capacity_ah, 10.0) << "that is the mission's alone";
 }
 
-TEST(BatterySection, TakesTheFirstOfSeveralPacks) {
+TEST(BatteryDocument, TakesTheFirstOfSeveralPacks) {
     const auto flights = flights_on(test::known_pack(), 1);
     const std::vector missions{mission_on(flights, 2.4), mission_on(flights, 10.0)};
     const auto battery = identify_for_report(flights, {}, 12, missions);
     EXPECT_EQ(battery.identified.value().battery.capacity_ah, 2.4);
 }
 
-TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
+TEST(BatteryDocument, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
     const auto flights = flights_on(test::known_pack(), 1);
     auto mission = std::get<mission::Mission>(mission_on(flights, 2.4));
     mission.setup.battery.capacity_ah = 0.1;
@@ -154,7 +158,7 @@ TEST(BatterySection, GoesOnWhereNewFlightsDrewMoreThanThePackHas) {
     EXPECT_THAT(battery.notes, testing::ElementsAre(HasSubstr("is not used: --capacity is 0.1 Ah")));
 }
 
-TEST(BatterySection, RefusesACapacityThatAFlightExceeds) {
+TEST(BatteryDocument, RefusesACapacityThatAFlightExceeds) {
     battery::IdentificationOptions options;
     options.capacity_ah = 0.01;
     EXPECT_THROW(identify_for_report(flights_on(test::known_pack(), 1), options, 12), UsageError);

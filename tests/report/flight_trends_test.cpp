@@ -1,11 +1,12 @@
 // Trends of flights whose ageing is known.
 
-#include "report/trends_section.h"
+#include "report/flight_trends.h"
 
 #include "base/error.h"
 #include "base/text_table.h"
 #include "helpers/aged_flights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -107,16 +108,21 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
         flights[f].facts.start_clock_s = seconds_per_day * static_cast<double>(f);
         flights[f].facts.mean_power_w[flight::Phase::cruise] = fresh_w + static_cast<double>(f);
     }
-    EXPECT_FALSE(trends_section(estimate_trends(flights), {}));
+    LatexTables tables;
+    EXPECT_TRUE(trends_json(estimate_trends(flights), {}, tables).is_null());
     flights.push_back(flights.back());
     flights.back().facts.start_clock_s = seconds_per_day * 9.0;
     flights.back().facts.mean_power_w[flight::Phase::cruise] = fresh_w + 9.0;
-    const auto section = trends_section(estimate_trends(flights), {});
-    ASSERT_TRUE(section);
-    ASSERT_EQ(section->figures.size(), 1U);
-    EXPECT_EQ(section->figures.front().id, "trends-1");
-    EXPECT_THAT(section->figures.front().description, HasSubstr("cruise power [W]: 42, +30 in 30 days"));
-    EXPECT_THAT(section->html, HasSubstr("rises"));
+    const auto json = trends_json(estimate_trends(flights), {}, tables);
+    const auto power =
+        std::ranges::find_if(json["trends"], [](const Json& one) { return one["quantity"] == "cruise_power_w"; });
+    ASSERT_NE(power, json["trends"].end());
+    EXPECT_EQ((*power)["median"], 42.0);
+    EXPECT_NEAR((*power)["change_in_30_days"].get<double>(), 30.0, 1e-9);
+    EXPECT_EQ((*power)["direction"], "rises");
+    EXPECT_EQ((*power)["flights"]["value"].size(), 5U);
+    EXPECT_EQ((*power)["lines"].size(), 3U) << "the slope, and the ends of its interval";
+    EXPECT_THAT(tables.text, HasSubstr("\\label{tab:trends}"));
 }
 
 TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
@@ -128,8 +134,8 @@ TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
     }
     const auto trends = estimate_trends(flights);
     EXPECT_THAT(to_text(table_of(trends)), HasSubstr("-60"));
-    EXPECT_THAT(trends_section(trends, {})->figures.front().description,
-                HasSubstr("capacity [% of mean]: 100, -60 in 30 days (-60 to -60), falls"));
+    LatexTables tables;
+    EXPECT_THAT(trends_json(trends, {}, tables).dump(), HasSubstr("\"falls\""));
 }
 
 TEST(PackWear, TakesTheCapacityThatIsKnown) {
@@ -157,10 +163,11 @@ TEST(PackWear, IsShownAsALedger) {
         use.named_by = answer::PackNaming::file;
     }
     const auto ledger = add_state_of_health(flights, std::move(uses));
-    const auto section = trends_section(estimate_trends(flights), ledger);
-    ASSERT_TRUE(section);
-    EXPECT_THAT(section->html, HasSubstr("pack A&lt;1&gt;: "));
-    EXPECT_THAT(section->html, HasSubstr("packs.toml"));
+    LatexTables tables;
+    const auto packs = trends_json(estimate_trends(flights), ledger, tables)["packs"];
+    ASSERT_EQ(packs.size(), 1U);
+    EXPECT_THAT(packs[0]["text"].get<std::string>(), HasSubstr("pack A<1>: "));
+    EXPECT_EQ(packs[0]["named_by"], "packs.toml");
 }
 
 }  // namespace
