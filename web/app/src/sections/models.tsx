@@ -48,7 +48,7 @@ function LevelFlight({ physical }: { physical: PhysicalDocument }) {
         <g class="tone-landing">
           <line class="error-bar" x1={place.x(low_m_per_s)} x2={place.x(high_m_per_s)} y1={place.y(power_w)} y2={place.y(power_w)} />
           <circle class="dot" cx={place.x(airspeed_m_per_s as number)} cy={place.y(power_w)} r="4.5" />
-          <text class="halo strong" x={place.x(airspeed_m_per_s as number)} y={place.y(power_w) + (i % 2 ? 22 : -12)} text-anchor="middle">{text || purpose}</text>
+          <text class="halo strong" x={place.x(airspeed_m_per_s as number)} y={place.y(power_w) + (i % 2 ? 22 : -12)} text-anchor="middle">{purpose}<title>{text}</title></text>
         </g>
       ))}
     </>
