@@ -154,7 +154,7 @@
       if (unit) big.append(node("small", unit));
       return group([node("dt", label), big, ...(oldText || note ? [node("dd", oldText || note, { className: "note" })] : [])], role ? { className: role } : {});
     }));
-    const inAir = state.flight_time_s > 0 ? `, ${durationText(state.flight_time_s)} in the air` : "";
+    const inAir = state.flight_time_s > 0 ? `, ${(hasLanded() ? wholeDuration : duration)(state.flight_time_s).join(" ")} in the air` : "";
     const hasHeard = state.messages > 0;
     write("phase", !hasHeard ? "Nothing received yet" : `${phaseNames[state.phase]}${inAir}${state.began_in_air ? " (since the first message)" : ""}`);
     write("received", !hasHeard ? "" : age() < 2 ? "received now" : `${old ? "" : "received "}${durationText(age())} ago`);

@@ -57,7 +57,7 @@ function Voltages({ voltages }: { voltages: BatteryDocument["voltages"] }) {
   );
 }
 
-type BatteryFlight = IdentifiedBattery["flights"][number] & { left_out?: { voltage_rms_mv: number; extrapolated_percent: number } };
+type BatteryFlight = IdentifiedBattery["flights"][number] & { left_out?: NonNullable<IdentifiedBattery["leave_one_out"]>[number] };
 const ohm = (value: number) => number(value, 4);
 
 const columns: Column<BatteryFlight>[] = [
@@ -69,6 +69,8 @@ const columns: Column<BatteryFlight>[] = [
   { head: "Samples", cell: ({ samples, unused_samples }) => <span>{samples}{unused_samples > 0 && <span class="small-under">{unused_samples} not used</span>}</span>, by: ({ samples }) => samples, numeric: true },
   { head: "Error of the voltage", cell: ({ voltage_rms_mv }) => quantity(voltage_rms_mv, 1, "mV"), by: ({ voltage_rms_mv }) => voltage_rms_mv, numeric: true },
   { head: "by the other flights", cell: ({ left_out }) => left_out && quantity(left_out.voltage_rms_mv, 1, "mV"), by: ({ left_out }) => left_out?.voltage_rms_mv, numeric: true },
+  { head: "under load", cell: ({ left_out }) => left_out && quantity(left_out.load_voltage_rms_mv, 1, "mV"), by: ({ left_out }) => left_out?.load_voltage_rms_mv, numeric: true },
+  { head: "30 s ahead", cell: ({ left_out }) => left_out && quantity(left_out.ahead_30_s_error_mv, 1, "mV"), by: ({ left_out }) => left_out?.ahead_30_s_error_mv, numeric: true },
   { head: "beyond the others", cell: ({ left_out }) => left_out && quantity(left_out.extrapolated_percent, 0, "%"), by: ({ left_out }) => left_out?.extrapolated_percent, numeric: true },
   { head: "Air", cell: ({ air_temperature_c: air }) => air != null && quantity(air, 0, "°C"), by: ({ air_temperature_c }) => air_temperature_c, numeric: true },
   { head: "Battery", cell: ({ battery_temperature_c: own }) => own != null && quantity(own, 0, "°C"), by: ({ battery_temperature_c }) => battery_temperature_c, numeric: true },

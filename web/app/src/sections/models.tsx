@@ -44,11 +44,11 @@ function LevelFlight({ physical }: { physical: PhysicalDocument }) {
   const powers = [...level.flatMap(({ power_w, low_w, high_w }) => [power_w, low_w, high_w]), ...bins.map(({ level_power_w }) => level_power_w)];
   const Best = ({ place }: { place: Place }) => (
     <>
-      {best.filter(({ airspeed_m_per_s }) => airspeed_m_per_s != null).map(({ purpose, airspeed_m_per_s, power_w, low_m_per_s, high_m_per_s }, i) => (
+      {best.filter(({ airspeed_m_per_s }) => airspeed_m_per_s != null).map(({ purpose, text, airspeed_m_per_s, power_w, low_m_per_s, high_m_per_s }, i) => (
         <g class="tone-landing">
           <line class="error-bar" x1={place.x(low_m_per_s)} x2={place.x(high_m_per_s)} y1={place.y(power_w)} y2={place.y(power_w)} />
           <circle class="dot" cx={place.x(airspeed_m_per_s as number)} cy={place.y(power_w)} r="4.5" />
-          <text class="halo strong" x={place.x(airspeed_m_per_s as number)} y={place.y(power_w) + (i % 2 ? 22 : -12)} text-anchor="middle">{purpose}</text>
+          <text class="halo strong" x={place.x(airspeed_m_per_s as number)} y={place.y(power_w) + (i % 2 ? 22 : -12)} text-anchor="middle">{purpose}<title>{text}</title></text>
         </g>
       ))}
     </>

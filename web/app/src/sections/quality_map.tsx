@@ -103,7 +103,7 @@ export function QualityMap({ grid, missions, mission, title }: QualityProps) {
       </header>
       <div class="quality-parts">
         <div>
-          <p class="soft">{grid.y_name && `${capital(words(grid.y_name))} upwards, `}{words(grid.x_name)} to the right</p>
+          <p class="soft">{grid.y_name && `${capital(words(grid.y_name))} upwards, `}{words(grid.x_name)} to the right{grid.others && `; ${words(grid.others)}`}</p>
           <Grid grid={grid} selected={selected} onSelect={setSelected} />
           <p class="chart-key">
             <span><i class="key-block quality-keeps" /> keeps the reserve</span>
