@@ -16,5 +16,8 @@ if (place && !carried && hasEngine()) {
   void project.start();
 } else if (place) {
   place.replaceChildren();
-  render(<Shell screens={[{ id: "report", name: "Report", show: () => <h1>{carried?.title ?? "FlightWatt"}</h1> }]} />, place);
+  render(
+    <Shell screens={[{ id: "report", name: "Report", show: () => <h1>{carried?.title ?? "FlightWatt"}</h1> }]} />,
+    place,
+  );
 }
