@@ -19,7 +19,7 @@ const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const skip = (program || page_file) && existsSync(executablePath)
   ? false
   : "neither FLIGHTWATT nor FLIGHTWATT_PAGE, or no browser";
-const patience = { timeout: 120_000 };
+const patience = { timeout: 300_000 };
 
 let browser;
 let folder;
