@@ -2,20 +2,19 @@
 import { render } from "preact";
 import "./app.css";
 import { carriedDocument } from "./documents";
-import { Report } from "./screens/report";
 import { hasEngine, openEngine } from "./engine/open";
 import { EngineApp } from "./screens/engine_app";
-import { Shell } from "./ui/shell";
+import { Report } from "./screens/report";
 import { Project } from "./work/project";
 
 const place = document.getElementById("app");
 const carried = carriedDocument();
-if (place && !carried && hasEngine()) {
+if (place && carried) {
+  place.replaceChildren();
+  render(<Report document={carried} />, place);
+} else if (place && hasEngine()) {
   const project = new Project(openEngine());
   place.replaceChildren();
   render(<EngineApp project={project} />, place);
   void project.start();
-} else if (place) {
-  place.replaceChildren();
-  render(carried ? <Report document={carried} /> : <Shell screens={[{ id: "report", name: "Report", show: () => <h1>FlightWatt</h1> }]} />, place);
 }

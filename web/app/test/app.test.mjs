@@ -16,8 +16,10 @@ const logs = path.resolve(here, "../../../logs");
 const program = process.env.FLIGHTWATT;
 const page_file = process.env.FLIGHTWATT_PAGE;
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const skip = (program || page_file) && existsSync(executablePath) ? false : "neither FLIGHTWATT nor FLIGHTWATT_PAGE, or no browser";
-const patience = { timeout: 120_000 };
+const skip = (program || page_file) && existsSync(executablePath)
+  ? false
+  : "neither FLIGHTWATT nor FLIGHTWATT_PAGE, or no browser";
+const patience = { timeout: 300_000 };
 
 let browser;
 let folder;
@@ -38,7 +40,10 @@ after(async () => {
 async function plainPage() {
   execFileSync("node", [path.resolve(here, "../../build.mjs"), folder]);
   const file = path.join(folder, "page.html");
-  await writeFile(file, '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>FlightWatt</title><link rel="stylesheet" href="app.css"><div id="app"></div><script src="app.js"></script>');
+  await writeFile(
+    file,
+    '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>FlightWatt</title><link rel="stylesheet" href="app.css"><div id="app"></div><script src="app.js"></script>',
+  );
   return pathToFileURL(file).href;
 }
 
@@ -120,18 +125,34 @@ test("a slider asks anew, keeps the old answer in sight, and takes it back", { s
   assert.notEqual(await page.textContent(".figures .figure-value"), before_move);
   assert.match(await page.textContent(".command code"), /--reserve 40/);
   await page.click("text=As measured");
-  await page.waitForFunction((text) => document.querySelector(".figures .figure-value")?.textContent === text, before_move, patience);
+  await page.waitForFunction(
+    (text) => document.querySelector(".figures .figure-value")?.textContent === text,
+    before_move,
+    patience,
+  );
 });
 
 test("an area is flown, and has a verdict with its command", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);
   const corners = [[1.48, 43.56], [1.49, 43.56], [1.49, 43.565], [1.48, 43.565], [1.48, 43.56]];
-  const area = JSON.stringify({ type: "Feature", properties: {}, geometry: { type: "Polygon", coordinates: [corners] } });
+  const area = JSON.stringify({
+    type: "Feature",
+    properties: {},
+    geometry: { type: "Polygon", coordinates: [corners] },
+  });
   await page.click('nav a[href="#plan"]');
-  await choose(page, [{ name: "field.geojson", mimeType: "application/json", buffer: Buffer.from(area) }], "Choose a plan");
+  await choose(
+    page,
+    [{ name: "field.geojson", mimeType: "application/json", buffer: Buffer.from(area) }],
+    "Choose a plan",
+  );
   await page.waitForSelector(".verdict-band, [role=alert]", patience);
-  assert.equal(await page.locator("[role=alert]").count(), 0, await page.locator("[role=alert]").allTextContents().then(String));
+  assert.equal(
+    await page.locator("[role=alert]").count(),
+    0,
+    await page.locator("[role=alert]").allTextContents().then(String),
+  );
   assert.match(await page.textContent(".command code"), /new-mission .*--plan field.geojson/);
 });
 
@@ -155,7 +176,8 @@ test("everything is reached by the keyboard", { skip, ...patience }, async (t) =
   const tabTo = async (name) => {
     for (let i = 0; i < 60; i += 1) {
       await page.keyboard.press("Tab");
-      const focused = await page.evaluate(() => document.activeElement?.getAttribute("aria-label") || document.activeElement?.textContent?.trim());
+      const focused = await page.evaluate(() =>
+        document.activeElement?.getAttribute("aria-label") || document.activeElement?.textContent?.trim());
       if (focused === name) return;
     }
     assert.fail(`the keyboard does not reach ${name}`);
@@ -173,16 +195,26 @@ test("everything is reached by the keyboard", { skip, ...patience }, async (t) =
   await page.waitForSelector(".figures .figure-value b", patience);
   await tabTo("Reserve");
   await page.keyboard.press("ArrowRight");
-  await page.waitForFunction(() => /--reserve 21/.test(document.querySelector(".command code")?.textContent ?? ""), null, patience);
+  await page.waitForFunction(
+    () => /--reserve 21/.test(document.querySelector(".command code")?.textContent ?? ""),
+    null,
+    patience,
+  );
 });
 
 for (const scheme of ["light", "dark"])
-  test(`no screen has a fault that axe finds, and none is wider than a phone: ${scheme}`, { skip, timeout: 240_000 }, async (t) => {
+  test(`no screen has a fault that axe finds, and none is wider than a phone: ${scheme}`, {
+    skip,
+    timeout: 240_000,
+  }, async (t) => {
     const page = await open(t, { width: 390, height: 844, scheme });
     const check = async (name) => {
       await page.waitForFunction(() => !document.querySelector("[aria-busy=true]"), null, patience);
       assert.deepEqual(await violations(page), [], name);
-      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name} is wider than 390 px`);
+      assert.ok(
+        await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
+        `${name} is wider than 390 px`,
+      );
     };
     await check("empty");
     await dropThree(page);

@@ -63,7 +63,10 @@ test("waypoints without a place are not drawn", () => {
 
 test("a question is the options of the program, and nothing is asked by nothing", () => {
   assert.deepEqual(question.optionsOf({}), []);
-  assert.deepEqual(question.optionsOf({ payload_kg: 0.5, mass_kg: 3.4, wind: 4 }), ["--payload", "0.5", "--mass", "3.4", "--wind", "4"]);
+  assert.deepEqual(
+    question.optionsOf({ payload_kg: 0.5, mass_kg: 3.4, wind: 4 }),
+    ["--payload", "0.5", "--mass", "3.4", "--wind", "4"],
+  );
   assert.deepEqual(question.optionsOf({ mass_kg: 3.4 }), []);
 });
 

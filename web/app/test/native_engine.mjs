@@ -9,7 +9,10 @@ export async function giveNativeEngine(page, program) {
   const folder = await mkdtemp(path.join(os.tmpdir(), "flightwatt-app-"));
   const place = (name) => path.join(folder, name);
   const all = async (below) =>
-    (await readdir(place(below), { withFileTypes: true })).flatMap((entry) => ({ entry, name: path.posix.join(below, entry.name) }));
+    (await readdir(place(below), { withFileTypes: true })).flatMap((entry) => ({
+      entry,
+      name: path.posix.join(below, entry.name),
+    }));
   const list = async (below = ".") => {
     const found = [];
     for (const { entry, name } of await all(below))
@@ -24,7 +27,10 @@ export async function giveNativeEngine(page, program) {
         const code = error ? (error.code ?? -1) : 0;
         done({ code, out, err });
       });
-      running.stderr.on("data", (text) => void page.evaluate((lines) => globalThis.nativeErrorLines?.(lines), String(text)).catch(() => {}));
+      running.stderr.on(
+        "data",
+        (text) => void page.evaluate((lines) => globalThis.nativeErrorLines?.(lines), String(text)).catch(() => {}),
+      );
     }));
   await page.exposeFunction("nativeWrite", async (name, base64, is_more) => {
     await mkdir(path.dirname(place(name)), { recursive: true });
@@ -53,7 +59,11 @@ export async function giveNativeEngine(page, program) {
       async write(name, data) {
         const bytes = data instanceof Uint8Array ? data : new Uint8Array(await data.arrayBuffer());
         const part = 3 << 20;
-        for (let at = 0; at === 0 || at < bytes.length; at += part) await globalThis.nativeWrite(name, base64Of(bytes.subarray(at, at + part)), at > 0);
+        for (let at = 0; at === 0 || at < bytes.length; at += part) await globalThis.nativeWrite(
+          name,
+          base64Of(bytes.subarray(at, at + part)),
+          at > 0,
+        );
       },
       read: async (name) => bytesOf(await globalThis.nativeRead(name)),
       list: () => globalThis.nativeList(),

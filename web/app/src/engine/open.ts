@@ -17,6 +17,7 @@ export function hasEngine(): boolean {
 
 /// Opens the page's engine; a page that is served is kept for a time without a network.
 export function openEngine(): Engine {
-  if (isServed() && "serviceWorker" in navigator) navigator.serviceWorker.register("service-worker.js").catch(() => undefined);
+  if (isServed() && "serviceWorker" in navigator) navigator.serviceWorker.register("service-worker.js")
+    .catch(() => undefined);
   return globalThis.flightwattEngine ?? startEngine();
 }

@@ -16,7 +16,11 @@ export function mainTime(answer: Answer): Known {
 }
 
 /// Returns "1 min 55 s less" between two values in the same unit.
-export function changeOf(now: number | null | undefined, before: number | null | undefined, words: (value: number) => string): string {
+export function changeOf(
+  now: number | null | undefined,
+  before: number | null | undefined,
+  words: (value: number) => string,
+): string {
   if (now == null || before == null) return "";
   const text = words(Math.abs(now - before));
   return /[1-9]/.test(text) ? `${text} ${now < before ? "less" : "more"}` : "no change";
@@ -45,17 +49,29 @@ function Figures({ now, measured, asking }: { now: Answered; measured?: Answered
   const speed = answer.airspeed_m_per_s.value;
   return (
     <section class={`card figures${asking ? " old" : ""}`} aria-label="Time and distance" aria-busy={asking}>
-      <Figure label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`} value={duration(time.value)}>
+      <Figure
+        label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`}
+        value={duration(time.value)}
+      >
         {is_chance && <Dots known={19} />}
         <p class="figure-note">
-          {is_chance ? <b class="ok">in 95 of 100 flights</b> : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
+          {is_chance
+            ? <b class="ok">in 95 of 100 flights</b>
+            : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
           <Change text={changeOf(time.value, before && mainTime(before).value, duration)} />
         </p>
         {is_chance && <p class="soft">half of the flights: {duration(answer.time_in_air_s.value)}</p>}
       </Figure>
-      <Figure label={speed != null && !answer.is_hover ? `Along the track, at ${quantity(speed, 1, "m/s")}` : "Along the track"} value={distance(answer.distance_m.value)}>
+      <Figure
+        label={speed != null && !answer.is_hover
+          ? `Along the track, at ${quantity(speed, 1, "m/s")}`
+          : "Along the track"}
+        value={distance(answer.distance_m.value)}
+      >
         <p class="figure-note">
-          {answer.distance_m.value != null ? <><b>half of the flights</b>, out and back</> : inPageWords(answer.distance_m.unknown)}
+          {answer.distance_m.value != null
+            ? <><b>half of the flights</b>, out and back</>
+            : inPageWords(answer.distance_m.unknown)}
           <Change text={changeOf(answer.distance_m.value, before?.distance_m.value, distance)} />
         </p>
         {answer.distance_across_m != null && <p class="soft">across the wind: {distance(answer.distance_across_m)}</p>}
@@ -90,24 +106,49 @@ function chargeLines(curve: Curve, old: Curve | null): { x: number[]; lines: Lin
 export function ChargePlot({ curve, old, name }: { curve: Curve; old: Curve | null; name: string }) {
   const { x, lines } = useMemo(() => chargeLines(curve, old), [curve, old]);
   const stripes = useMemo(
-    () => curve.phases.map((phase) => ({ from: phase.from / 60, to: phase.to / 60, colour: phase_colours[phase.name] ?? "cruise" })),
+    () => curve.phases.map((phase) => ({
+      from: phase.from / 60,
+      to: phase.to / 60,
+      colour: phase_colours[phase.name] ?? "cruise",
+    })),
     [curve],
   );
-  const { reserve_soc_percent: reserve, final_soc_percent: final, duration_s, depleted_at_s: empty_s } = curve.simulation;
+  const { reserve_soc_percent: reserve, final_soc_percent: final, duration_s, depleted_at_s: empty_s } =
+    curve.simulation;
   const end_s = empty_s ?? duration_s;
-  const words = empty_s != null ? `empty after ${duration(empty_s)}` : `${number(final, 0)} % after ${duration(duration_s)}`;
+  const words = empty_s != null
+    ? `empty after ${duration(empty_s)}`
+    : `${number(final, 0)} % after ${duration(duration_s)}`;
   const labels = useMemo(
     () => [
       { x: 0, y: reserve + 1, text: ` reserve ${number(reserve, 0)} %`, colour: "alarm" },
-      { x: end_s / 60, y: final > 60 ? final - 14 : 88, text: words, colour: empty_s != null ? "alarm" : "ink", align: "right" as const },
+      {
+        x: end_s / 60,
+        y: final > 60 ? final - 14 : 88,
+        text: words,
+        colour: empty_s != null ? "alarm" : "ink",
+        align: "right" as const,
+      },
     ],
     [curve],
   );
   // Of a flight that runs empty, what would follow is left out.
   const x_range = empty_s != null ? ([0, Math.min(1.4 * empty_s, duration_s) / 60] as [number, number]) : undefined;
   return (
-    <Plot x={x} lines={lines} stripes={stripes} strip labels={labels} legend={false} x_title="Time [min]" y_title="Charge [%]" y_range={[0, 100]} x_range={x_range} height={250}
-      description={`${name}: charge over time, landing with ${number(final, 0)} % after ${duration(duration_s)}; reserve ${number(reserve, 0)} %.`} />
+    <Plot
+      x={x}
+      lines={lines}
+      stripes={stripes}
+      strip
+      labels={labels}
+      legend={false}
+      x_title="Time [min]"
+      y_title="Charge [%]"
+      y_range={[0, 100]}
+      x_range={x_range}
+      height={250}
+      description={`${name}: charge over time, ${words}; reserve ${number(reserve, 0)} %.`}
+    />
   );
 }
 
@@ -118,12 +159,17 @@ function ChargeCard({ now, measured }: { now: Answered; measured?: Answered }) {
   const old = measured && measured !== now ? measured.curve : null;
   return (
     <Card title="Charge over the flight" aside={aside}>
-      {curve ? <ChargePlot curve={curve} old={old} name="The longest flight" /> : <p>Unknown: {inPageWords(answer.time_in_air_s.unknown)}</p>}
+      {curve
+        ? <ChargePlot curve={curve} old={old} name="The longest flight" />
+        : <p>Unknown: {inPageWords(answer.time_in_air_s.unknown)}</p>}
       {curve && (
         <p class="plot-key">
           {curve.phases.map((phase) => (
             <span>
-              <i class="swatch" style={{ background: `var(--${phase_colours[phase.name] ?? "cruise"})` }} /> {phase_words[phase.name] ?? phase.name}
+              <i
+                class="swatch"
+                style={{ background: `var(--${phase_colours[phase.name] ?? "cruise"})` }}
+              /> {phase_words[phase.name] ?? phase.name}
             </span>
           ))}
           {curve.band && <span>grey: 90 of 100 flights</span>}
@@ -192,7 +238,12 @@ function leftOut(table: string, model: string): LeftOut[] {
   const value = (cell: string | undefined) => (cell && Number.isFinite(Number(cell)) ? Number(cell) : null);
   return rows
     .filter((row) => row[1] === "total" && row[2] === model)
-    .map((row) => ({ flight: row[0] ?? "", used_wh: value(row[3]), predicted_wh: value(row[5]), off_percent: value(row[7]) }));
+    .map((row) => ({
+      flight: row[0] ?? "",
+      used_wh: value(row[3]),
+      predicted_wh: value(row[5]),
+      off_percent: value(row[7]),
+    }));
 }
 
 /// How each flight is predicted by the others, of `flightwatt validate`.
@@ -211,7 +262,9 @@ function useLeftOut(project: Project, aircraft: Aircraft, model: string | undefi
   return rows;
 }
 
-const signed = (value: number | null) => (value != null && value > 0 ? `+${quantity(value, 1, "%")}` : quantity(value, 1, "%"));
+const signed = (value: number | null) => (value != null && value > 0
+  ? `+${quantity(value, 1, "%")}`
+  : quantity(value, 1, "%"));
 
 function PredictedCard({ project, aircraft, answered }: { project: Project; aircraft: Aircraft; answered: Answered }) {
   const error = answered.answer.prediction_error_percent;
@@ -228,7 +281,12 @@ function PredictedCard({ project, aircraft, answered }: { project: Project; airc
       {rows.length > 1 && (
         <table class="left-out">
           <thead>
-            <tr><th scope="col">Flight</th><th scope="col">Used</th><th scope="col">Predicted</th><th scope="col">Off</th></tr>
+            <tr>
+              <th scope="col">Flight</th>
+              <th scope="col">Used</th>
+              <th scope="col">Predicted</th>
+              <th scope="col">Off</th>
+            </tr>
           </thead>
           <tbody>
             {rows.slice(0, 6).map((row) => (
@@ -249,7 +307,12 @@ function PredictedCard({ project, aircraft, answered }: { project: Project; airc
 
 /// How good a health is.
 export const healthGrade: Record<string, Grade> = { healthy: "good", watch: "doubt", retire: "bad", unknown: "none" };
-export const healthWord: Record<string, string> = { healthy: "Healthy", watch: "Watch", retire: "Retire", unknown: "Too early to say" };
+export const healthWord: Record<string, string> = {
+  healthy: "Healthy",
+  watch: "Watch",
+  retire: "Retire",
+  unknown: "Too early to say",
+};
 
 function PackHealth({ answer }: { answer: Answer }) {
   const pack = answer.packs[0];
@@ -269,10 +332,13 @@ function PackHealth({ answer }: { answer: Answer }) {
 
 function headline({ answer, question }: Answered): string {
   const time = mainTime(answer);
-  if (time.value == null) return answer.power_w.value != null ? `It draws ${quantity(answer.power_w.value, answer.power_w.value < 100 ? 1 : 0, "W")}; how long is not known yet` : "How long it flies is not known yet";
+  if (time.value == null) return answer.power_w.value != null
+    ? `It draws ${quantity(answer.power_w.value, answer.power_w.value < 100 ? 1 : 0, "W")}; how long is not known yet`
+    : "How long it flies is not known yet";
   const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : "";
   const asked = asWords(question);
-  return `${asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A"} full pack lasts ${duration(time.value)}${chance}`;
+  const begin = asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A";
+  return `${begin} full pack lasts ${duration(time.value)}${chance}`;
 }
 
 /// What to do where the answer lacks its capacity.
@@ -308,7 +374,8 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
     );
   const asking = project.isAsking(aircraft.id);
   const { answer } = now;
-  const command = `flightwatt ${logsShown(aircraft.logs.map((line) => line.path))} ${optionsOf(aircraft.question).map(quoted).join(" ")}`.trim();
+  const logs = logsShown(aircraft.logs.map((line) => line.path));
+  const command = ["flightwatt", logs, ...optionsOf(aircraft.question).map(quoted)].join(" ");
   return (
     <>
       <header class="screen-head">

@@ -45,7 +45,11 @@ function useDrop(project: Project): boolean {
 function AircraftChoice({ project, state }: { project: Project; state: State }) {
   if (state.aircraft.length < 2) return state.aircraft[0] ? <span class="soft">{state.aircraft[0].name}</span> : null;
   return (
-    <select aria-label="Aircraft" value={project.aircraft()?.id} onChange={(event) => project.choose(event.currentTarget.value)}>
+    <select
+      aria-label="Aircraft"
+      value={project.aircraft()?.id}
+      onChange={(event) => project.choose(event.currentTarget.value)}
+    >
       {state.aircraft.map((one) => (
         <option value={one.id}>{one.name === one.id ? one.name : `${one.name} ${one.id}`}</option>
       ))}
@@ -58,10 +62,30 @@ export function EngineApp({ project }: { project: Project }) {
   const over = useDrop(project);
   const aircraft = project.aircraft();
   const screens = [
-    { id: "logs", name: "Logs", icon: <Icon name="logs" />, show: () => <LogsScreen project={project} state={state} /> },
-    { id: "answer", name: "Answer", icon: <Icon name="answer" />, show: () => <AnswerScreen key={aircraft?.id} project={project} aircraft={aircraft} /> },
-    { id: "plan", name: "Plan", icon: <Icon name="plan" />, show: () => <PlanScreen key={aircraft?.id} project={project} state={state} aircraft={aircraft} /> },
-    { id: "flights", name: "Flights and packs", icon: <Icon name="flights" />, show: () => <FlightsScreen project={project} state={state} /> },
+    {
+      id: "logs",
+      name: "Logs",
+      icon: <Icon name="logs" />,
+      show: () => <LogsScreen project={project} state={state} />,
+    },
+    {
+      id: "answer",
+      name: "Answer",
+      icon: <Icon name="answer" />,
+      show: () => <AnswerScreen key={aircraft?.id} project={project} aircraft={aircraft} />,
+    },
+    {
+      id: "plan",
+      name: "Plan",
+      icon: <Icon name="plan" />,
+      show: () => <PlanScreen key={aircraft?.id} project={project} state={state} aircraft={aircraft} />,
+    },
+    {
+      id: "flights",
+      name: "Flights and packs",
+      icon: <Icon name="flights" />,
+      show: () => <FlightsScreen project={project} state={state} />,
+    },
   ];
   const aside = (
     <>

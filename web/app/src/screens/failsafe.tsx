@@ -1,7 +1,7 @@
 // The battery failsafe of an answer as parameters of autopilots, as `flightwatt export` writes them.
 import { useEffect, useState } from "preact/hooks";
 import { Card, CopyButton, Folded, save } from "../ui/basics";
-import { chance, number } from "../ui/format";
+import { chance, number, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
 import type { Failsafe } from "../work/documents";
 import { errorsOf, type Aircraft, type Answered, type Project } from "../work/project";
@@ -27,19 +27,39 @@ export function parametersOf(text: string): [string, string][] {
   return rows;
 }
 
+const percent = (value: number | null | undefined) => quantity(value, 0, "%");
+
 /// The charge of a pack in parts: out and work, the way home, the reserve.
 function Budget({ card }: { card: Failsafe }) {
   const low = card.low?.soc_percent;
   const critical = card.critical?.soc_percent;
-  const parts = low != null ? [["out", low, 100], ["return", card.reserve_percent, low]] : [["out", card.reserve_percent, 100]];
+  const parts = low != null
+    ? [["out", low, 100], ["return", card.reserve_percent, low]]
+    : [["out", card.reserve_percent, 100]];
   return (
-    <div class="budget" role="img" aria-label={`Return at ${low ?? "an unknown"} % of charge, land at ${critical ?? "an unknown"} %, reserve ${number(card.reserve_percent, 0)} %.`}>
+    <div
+      class="budget"
+      role="img"
+      aria-label={`Return at ${percent(low)}, land at ${percent(critical)}, reserve ${percent(card.reserve_percent)}.`}
+    >
       <svg viewBox="0 0 100 16" preserveAspectRatio="none" aria-hidden="true">
         {parts.map(([name, from, to]) => (
-          <rect class={`part ${name}`} x={100 - Number(to)} y="3" height="10" width={Math.max(Number(to) - Number(from), 0)} />
+          <rect
+            class={`part ${name}`}
+            x={100 - Number(to)}
+            y="3"
+            height="10"
+            width={Math.max(Number(to) - Number(from), 0)}
+          />
         ))}
         <rect class="part reserve" x={100 - card.reserve_percent} y="3" height="10" width={card.reserve_percent} />
-        {[low, critical].map((at) => at != null && <rect class="at" x={100 - at - 0.3} y="0" height="16" width="0.8" />)}
+        {[low, critical].map((at) => at != null && <rect
+          class="at"
+          x={100 - at - 0.3}
+          y="0"
+          height="16"
+          width="0.8"
+        />)}
       </svg>
       <p class="budget-words">
         {low != null && <span>return at <b>{low} %</b></span>}
@@ -57,7 +77,13 @@ function useExport(project: Project, aircraft: Aircraft, answered: Answered, aut
     let is_wanted = true;
     setStale(true);
     const { folder } = aircraft;
-    const args = ["export", `${folder}/answer-mission.toml`, "--format", `failsafe-${autopilot.id}`, ...failsafeOptions(answered.question, answered.answer)];
+    const args = [
+      "export",
+      `${folder}/answer-mission.toml`,
+      "--format",
+      `failsafe-${autopilot.id}`,
+      ...failsafeOptions(answered.question, answered.answer),
+    ];
     void project.runOnAnswer(aircraft.id, answered, args).then((result) => {
       if (!is_wanted) return;
       setStale(false);
@@ -70,7 +96,12 @@ function useExport(project: Project, aircraft: Aircraft, answered: Answered, aut
   return { text, stale };
 }
 
-function Parameters({ project, aircraft, answered, autopilot }: { project: Project; aircraft: Aircraft; answered: Answered; autopilot: Autopilot }) {
+function Parameters({ project, aircraft, answered, autopilot }: {
+  project: Project;
+  aircraft: Aircraft;
+  answered: Answered;
+  autopilot: Autopilot;
+}) {
   const { text: written, stale } = useExport(project, aircraft, answered, autopilot);
   if (!written) return <p class="soft">Computing</p>;
   if (written.failed) return <p>{written.failed}</p>;
@@ -86,7 +117,11 @@ function Parameters({ project, aircraft, answered, autopilot }: { project: Proje
       </dl>
       <p class="buttons">
         <CopyButton primary text={written.text} label={`Copy for ${autopilot.name}`} />
-        <button type="button" class="quiet" onClick={() => save(`failsafe-${autopilot.id}${autopilot.ending}`, written.text, "text/plain")}>
+        <button
+          type="button"
+          class="quiet"
+          onClick={() => save(`failsafe-${autopilot.id}${autopilot.ending}`, written.text, "text/plain")}
+        >
           <Icon name="save" /> File
         </button>
       </p>
@@ -95,7 +130,11 @@ function Parameters({ project, aircraft, answered, autopilot }: { project: Proje
   );
 }
 
-export function FailsafeCard({ project, aircraft, answered }: { project: Project; aircraft: Aircraft; answered: Answered }) {
+export function FailsafeCard({ project, aircraft, answered }: {
+  project: Project;
+  aircraft: Aircraft;
+  answered: Answered;
+}) {
   const [chosen, setChosen] = useState<Autopilot>(autopilots[0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
   const home_m = aircraft.question.home_m ?? card?.home_distance_m;
@@ -108,7 +147,13 @@ export function FailsafeCard({ project, aircraft, answered }: { project: Project
       <label class="field">
         <span>Farthest from home</span>
         <span>
-          <input type="text" inputMode="decimal" size={6} value={home_m != null ? String(Math.round(home_m)) : ""} onChange={(event) => setHome(event.currentTarget.value)} /> m
+          <input
+            type="text"
+            inputMode="decimal"
+            size={6}
+            value={home_m != null ? String(Math.round(home_m)) : ""}
+            onChange={(event) => setHome(event.currentTarget.value)}
+          /> m
         </span>
       </label>
       {!card && <p>None: {inPageWords(failsafe_missing)}</p>}
@@ -124,7 +169,11 @@ export function FailsafeCard({ project, aircraft, answered }: { project: Project
             ))}
           </div>
           <Parameters project={project} aircraft={aircraft} answered={answered} autopilot={chosen} />
-          {card.low && <p class="small">The return begins too late in {chance(card.low.probability_too_late)} flights.</p>}
+          {card.low && <p class="small">
+            The return begins too late in{" "}
+            {chance(card.low.probability_too_late)}{" "}
+            flights.
+          </p>}
           <Folded title="What the failsafe rests on">
             <ul class="rests">
               {card.rests_on.map((one) => (

@@ -5,7 +5,7 @@ import { date, duration, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
 import { filesOfInput, type Dropped } from "../work/files";
 import type { Aircraft, LogLine, Project, State } from "../work/project";
-import { logsShown, quoted } from "../work/question";
+import { logsShown } from "../work/question";
 
 const states = {
   waiting: { grade: "none", word: "Waiting" },
@@ -15,7 +15,12 @@ const states = {
 } as const;
 
 /// A button that opens the computer's dialog for files or, where it has one, for a folder.
-export function FilesButton(props: { label: string; folder?: boolean; class?: string; onFiles: (files: Dropped[]) => void }) {
+export function FilesButton(props: {
+  label: string;
+  folder?: boolean;
+  class?: string;
+  onFiles: (files: Dropped[]) => void;
+}) {
   const field = useRef<HTMLInputElement>(null);
   useEffect(() => {
     if (props.folder) field.current?.setAttribute("webkitdirectory", "");
@@ -39,7 +44,8 @@ export function FilesButton(props: { label: string; folder?: boolean; class?: st
 export function Sparkline({ values }: { values?: number[] }) {
   if (!values || values.length < 2) return <span class="spark" />;
   const top = Math.max(...values, 1);
-  const points = values.map((value, i) => `${((150 * i) / (values.length - 1)).toFixed(1)},${(27 - (24 * Math.max(value, 0)) / top).toFixed(1)}`);
+  const points = values.map((value, i) =>
+    `${((150 * i) / (values.length - 1)).toFixed(1)},${(27 - (24 * Math.max(value, 0)) / top).toFixed(1)}`);
   return (
     <svg class="spark" viewBox="0 0 150 28" preserveAspectRatio="none" aria-hidden="true">
       <path class="area" d={`M0,28L${points.join("L")}L150,28z`} />
@@ -99,13 +105,21 @@ function PackField({ aircraft, project }: { aircraft: Aircraft; project: Project
     if (text.trim() === "") project.ask(aircraft.id, { ...aircraft.question, capacity_ah: undefined });
     else if (ah > 0 && ah <= 200) project.ask(aircraft.id, { ...aircraft.question, capacity_ah: ah });
   };
-  const basis = stated != null ? "as you stated it" : capacity?.value != null ? capacity.basis : capacity ? "not in the logs: what does its label say?" : "";
+  const basis = stated != null
+    ? "as you stated it"
+    : capacity?.value != null ? capacity.basis : capacity ? "not in the logs: what does its label say?" : "";
   return (
     <div class="pack-field">
       <label>
         <span>Pack</span>
-        <input type="text" inputMode="decimal" size={4} value={value != null ? String(Math.round(value * 100) / 100) : ""}
-          aria-label={`Capacity of the pack of ${aircraft.name} in Ah`} onChange={(event) => change(event.currentTarget.value)} />
+        <input
+          type="text"
+          inputMode="decimal"
+          size={4}
+          value={value != null ? String(Math.round(value * 100) / 100) : ""}
+          aria-label={`Capacity of the pack of ${aircraft.name} in Ah`}
+          onChange={(event) => change(event.currentTarget.value)}
+        />
         <span class="soft">Ah</span>
       </label>
       {basis && (
@@ -161,13 +175,20 @@ function Empty({ project }: { project: Project }) {
   return (
     <div class="empty">
       <h1>How long, how far, and does my plan fit?</h1>
-      <p class="lead">Drop the logs of your drone. FlightWatt learns what it really draws and answers for tomorrow’s pack, payload and wind.</p>
+      <p class="lead">
+        Drop the logs of your drone. FlightWatt learns what it really draws and answers for tomorrow’s pack, payload
+        and wind.
+      </p>
       <div class="empty-parts">
         <div class="drop">
           <Icon name="logs" size={56} />
           <p class="drop-title">Drop logs, a folder or a plan here</p>
           <p class="drop-buttons">
-            <FilesButton label="Choose files" class="primary" onFiles={add} /> <FilesButton label="Choose a folder" folder onFiles={add} />
+            <FilesButton
+              label="Choose files"
+              class="primary"
+              onFiles={add}
+            /> <FilesButton label="Choose a folder" folder onFiles={add} />
           </p>
           <p class="promise">
             <Icon name="lock" /> Nothing leaves this computer. Works without a network.
@@ -217,14 +238,16 @@ function heading(state: State): string {
   const used = state.aircraft.reduce((sum, one) => sum + one.logs.length, 0);
   if (state.progress && used === 0) return "Reading";
   const aircraft = state.aircraft.length === 1 ? "1 aircraft" : `${state.aircraft.length} aircraft`;
-  return `${aircraft}: ${used} ${used === 1 ? "log" : "logs"} used${state.unused.length > 0 ? `, ${state.unused.length} not` : ""}`;
+  const unused = state.unused.length > 0 ? `, ${state.unused.length} not` : "";
+  return `${aircraft}: ${used} ${used === 1 ? "log" : "logs"} used${unused}`;
 }
 
 function commandOf(state: State): string {
   const logs = [...state.aircraft.flatMap((one) => one.logs), ...state.unused].map((line) => line.path);
   const only = state.aircraft.length === 1 ? state.aircraft[0] : undefined;
   const capacity = only?.question.capacity_ah;
-  return `flightwatt ${logsShown(logs)}${state.aircraft.length > 1 ? " --each" : ""}${capacity ? ` --capacity ${quoted(String(capacity))}` : ""}`;
+  const each = state.aircraft.length > 1 ? " --each" : "";
+  return `flightwatt ${logsShown(logs)}${each}${capacity ? ` --capacity ${capacity}` : ""}`;
 }
 
 export function LogsScreen({ project, state }: { project: Project; state: State }) {
@@ -235,7 +258,11 @@ export function LogsScreen({ project, state }: { project: Project; state: State 
     <>
       <header class="screen-head">
         <div>
-          <p class="over">{state.read_s != null && !state.progress ? `Read in ${state.read_s.toFixed(1)} s` : "Nothing leaves this computer"}</p>
+          <p class="over">
+            {state.read_s != null && !state.progress
+              ? `Read in ${state.read_s.toFixed(1)} s`
+              : "Nothing leaves this computer"}
+          </p>
           <h1>{heading(state)}</h1>
         </div>
         <div class="screen-buttons">

@@ -15,22 +15,43 @@ import { ChargePlot, NoLogs } from "./answer";
 import { FilesButton, takeFiles } from "./logs";
 
 const fileName = (path: string) => path.split("/").pop() ?? path;
+const no_plan: PlanOptions = { plan: "FILE", blocks: [], packs: 1 };
 const drawn_area = "plans/drawn area.geojson";
 
 /// What a simulated plan comes to, in words.
-function verdictOf({ simulation, time_s, soc }: Curve): { grade: Grade; title: string; detail: string; chance: string } {
+function verdictOf({ simulation, time_s, soc }: Curve): {
+  grade: Grade;
+  title: string;
+  detail: string;
+  chance: string;
+} {
   const reserve = simulation.reserve_soc_percent;
-  const packs = simulation.packs ? (simulation.packs_needed === 1 ? "one pack" : `${simulation.packs_needed ?? simulation.packs} packs`) : "one pack";
+  const packs = simulation.packs
+    ? (simulation.packs_needed === 1 ? "one pack" : `${simulation.packs_needed ?? simulation.packs} packs`)
+    : "one pack";
   const below = soc.findIndex((value) => value != null && value < reserve);
   const empty = simulation.depleted_at_s ?? simulation.cut_off_at_s;
   const kept = simulation.probability_below_reserve != null ? 1 - simulation.probability_below_reserve : null;
-  const lands = `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
+  const lands =
+    `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
   const words = kept != null ? chance(kept) : "";
   if (!simulation.keeps_reserve) {
-    const where = below >= 0 && time_s[below] != null ? `Below the reserve of ${number(reserve, 0)} % after ${duration(time_s[below])}` : `Misses the reserve of ${number(reserve, 0)} %`;
-    return { grade: "bad", title: `Does not fit ${packs}`, detail: `${where}${empty != null ? `; empty after ${duration(empty)}` : ""}.`, chance: words };
+    const where = below >= 0 && time_s[below] != null
+      ? `Below the reserve of ${number(reserve, 0)} % after ${duration(time_s[below])}`
+      : `Misses the reserve of ${number(reserve, 0)} %`;
+    return {
+      grade: "bad",
+      title: `Does not fit ${packs}`,
+      detail: `${where}${empty != null ? `; empty after ${duration(empty)}` : ""}.`,
+      chance: words,
+    };
   }
-  if (kept != null && kept < 0.95) return { grade: "doubt", title: "May miss the reserve", detail: lands, chance: words };
+  if (kept != null && kept < 0.95) return {
+    grade: "doubt",
+    title: "May miss the reserve",
+    detail: lands,
+    chance: words,
+  };
   return { grade: "good", title: `Fits ${packs}`, detail: lands, chance: words };
 }
 
@@ -38,7 +59,12 @@ function Band({ curve, asking }: { curve: Curve; asking: boolean }) {
   const verdict = verdictOf(curve);
   const [figure, ...rest] = verdict.chance.split(" of ");
   return (
-    <section class={`verdict-band ${verdict.grade}${asking ? " old" : ""}`} aria-label="Verdict" aria-live="polite" aria-busy={asking}>
+    <section
+      class={`verdict-band ${verdict.grade}${asking ? " old" : ""}`}
+      aria-label="Verdict"
+      aria-live="polite"
+      aria-busy={asking}
+    >
       <Mark grade={verdict.grade} />
       <div>
         <h1>{verdict.title}</h1>
@@ -54,28 +80,82 @@ function Band({ curve, asking }: { curve: Curve; asking: boolean }) {
 }
 
 /// The sliders of a plan and what each is where nothing is asked.
-function PlanSliders({ flown, options, change }: { flown: FlownPlan; options: PlanOptions; change: (next: Partial<PlanOptions>) => void }) {
+function PlanSliders({ flown, options, change }: {
+  flown: FlownPlan;
+  options: PlanOptions;
+  change: (next: Partial<PlanOptions>) => void;
+}) {
   const speed = options.airspeed ?? flown.airspeed;
   return (
     <>
       {flown.is_area && flown.spacing != null && (
-        <Slider label="Spacing of the lines" value={options.spacing ?? flown.spacing} min={5} max={200} step={1} shown={quantity(options.spacing ?? flown.spacing, 0, "m")}
-          changed={options.spacing != null} onChange={(spacing) => change({ spacing })} />
+        <Slider
+          label="Spacing of the lines"
+          value={options.spacing ?? flown.spacing}
+          min={5}
+          max={200}
+          step={1}
+          shown={quantity(options.spacing ?? flown.spacing, 0, "m")}
+          changed={options.spacing != null}
+          onChange={(spacing) => change({ spacing })}
+        />
       )}
       {flown.is_area && flown.heading != null && (
-        <Slider label="Heading of the lines" value={options.heading ?? flown.heading} min={0} max={179} step={1} shown={`${number(options.heading ?? flown.heading, 0)}°`}
-          changed={options.heading != null} onChange={(heading) => change({ heading })} />
+        <Slider
+          label="Heading of the lines"
+          value={options.heading ?? flown.heading}
+          min={0}
+          max={179}
+          step={1}
+          shown={`${number(options.heading ?? flown.heading, 0)}°`}
+          changed={options.heading != null}
+          onChange={(heading) => change({ heading })}
+        />
       )}
       {speed != null && (
-        <Slider label="Airspeed" value={speed} min={1} max={Math.max(20, Math.ceil(1.5 * speed))} step={0.1} shown={quantity(speed, 1, "m/s")}
-          changed={options.airspeed != null} onChange={(airspeed) => change({ airspeed })} />
+        <Slider
+          label="Airspeed"
+          value={speed}
+          min={1}
+          max={Math.max(20, Math.ceil(1.5 * speed))}
+          step={0.1}
+          shown={quantity(speed, 1, "m/s")}
+          changed={options.airspeed != null}
+          onChange={(airspeed) => change({ airspeed })}
+        />
       )}
-      <Slider label="Wind" value={options.wind ?? 0} min={0} max={15} step={0.5} shown={options.wind ? quantity(options.wind, 1, "m/s") : "calm"}
-        changed={!!options.wind} onChange={(wind) => change({ wind })} />
+      <Slider
+        label="Wind"
+        value={options.wind ?? 0}
+        min={0}
+        max={15}
+        step={0.5}
+        shown={options.wind ? quantity(options.wind, 1, "m/s") : "calm"}
+        changed={!!options.wind}
+        onChange={(wind) => change({ wind })}
+      />
       {!!options.wind && (
-        <Slider label="Wind from" value={options.wind_from ?? 0} min={0} max={355} step={5} shown={`${options.wind_from ?? 0}°`} changed onChange={(wind_from) => change({ wind_from })} />
+        <Slider
+          label="Wind from"
+          value={options.wind_from ?? 0}
+          min={0}
+          max={355}
+          step={5}
+          shown={`${options.wind_from ?? 0}°`}
+          changed
+          onChange={(wind_from) => change({ wind_from })}
+        />
       )}
-      <Slider label="Packs" value={options.packs} min={1} max={6} step={1} shown={String(options.packs)} changed={options.packs > 1} onChange={(packs) => change({ packs })} />
+      <Slider
+        label="Packs"
+        value={options.packs}
+        min={1}
+        max={6}
+        step={1}
+        shown={String(options.packs)}
+        changed={options.packs > 1}
+        onChange={(packs) => change({ packs })}
+      />
     </>
   );
 }
@@ -89,13 +169,20 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
     let is_wanted = true;
     const tries: { words: string; change: Partial<PlanOptions> }[] = [];
     const { packs } = flown.options;
-    if (!flown.curve.simulation.keeps_reserve) tries.push({ words: `${packs + 1} packs`, change: { packs: packs + 1 } });
+    if (!flown.curve.simulation.keeps_reserve) tries.push({
+      words: `${packs + 1} packs`,
+      change: { packs: packs + 1 },
+    });
     if (flown.spacing != null) {
       const spacing = Math.round(flown.spacing * 1.5);
       tries.push({ words: `Spacing ${spacing} m instead of ${number(flown.spacing, 0)}`, change: { spacing } });
     }
-    const best = answered.answer.best_speeds.find((one) => /range/.test(one.purpose) && !one.below_flown && !one.above_flown)?.airspeed_m_per_s;
-    if (best) tries.push({ words: `Airspeed ${number(best, 1)} m/s`, change: { airspeed: Math.round(10 * best) / 10 } });
+    const best = answered.answer.best_speeds.find((one) =>
+      /range/.test(one.purpose) && !one.below_flown && !one.above_flown)?.airspeed_m_per_s;
+    if (best) tries.push({
+      words: `Airspeed ${number(best, 1)} m/s`,
+      change: { airspeed: Math.round(10 * best) / 10 },
+    });
     void (async () => {
       for (const one of tries) {
         if (!is_wanted) return;
@@ -111,7 +198,12 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
 }
 
 /// Flies the latest options; while a flight is under way the last ones alone are next.
-function useFlown(project: Project, aircraft: Aircraft | undefined, answered: Answered | undefined, options: PlanOptions | null) {
+function useFlown(
+  project: Project,
+  aircraft: Aircraft | undefined,
+  answered: Answered | undefined,
+  options: PlanOptions | null,
+) {
   const [flown, setFlown] = useState<FlownPlan | null>(null);
   const [failed, setFailed] = useState("");
   const wanted = useRef<PlanOptions | null>(null);
@@ -143,7 +235,10 @@ function useFlown(project: Project, aircraft: Aircraft | undefined, answered: An
 function useShape(project: Project, plan: string): PlanShape {
   const [shape, setShape] = useState<PlanShape>({ lines: [], areas: [], named: [] });
   useEffect(() => {
-    if (plan) void project.text(plan).then((text) => setShape(shapeOf(plan, text)), () => setShape({ lines: [], areas: [], named: [] }));
+    if (plan) void project.text(plan).then(
+      (text) => setShape(shapeOf(plan, text)),
+      () => setShape({ lines: [], areas: [], named: [] }),
+    );
     else setShape({ lines: [], areas: [], named: [] });
   }, [plan]);
   return shape;
@@ -172,7 +267,10 @@ interface MapProps {
 
 function PlanMap({ shape, flown, drawing, onPlace }: MapProps) {
   const tracks = useMemo((): Track[] => {
-    if (drawing) return [{ name: "flown before", colour: "ink3", places: flown, weight: 1.5 }, { name: "the area", colour: "link", places: drawing, closed: drawing.length > 2 }];
+    if (drawing) return [
+      { name: "flown before", colour: "ink3", places: flown, weight: 1.5 },
+      { name: "the area", colour: "link", places: drawing, closed: drawing.length > 2 },
+    ];
     return [
       ...shape.areas.map((places): Track => ({ name: "area", colour: "link", places, closed: true })),
       ...shape.lines.map((places): Track => ({ name: "plan", colour: "cruise", places })),
@@ -185,20 +283,47 @@ function PlanMap({ shape, flown, drawing, onPlace }: MapProps) {
     return first ? [{ name: "home", colour: "ink", place: first }, ...named] : named;
   }, [shape, drawing]);
   const click = useCallback((place: Place) => drawing && onPlace(place), [drawing, onPlace]);
-  return <TrackMap tracks={tracks} spots={spots} still={drawing != null && drawing.length > 0} view={flown[0]} height={380} onClick={click} description="The plan on a map, north at the top." />;
+  return <TrackMap
+    tracks={tracks}
+    spots={spots}
+    still={drawing != null && drawing.length > 0}
+    view={flown[0]}
+    height={380}
+    onClick={click}
+    description="The plan on a map, north at the top."
+  />;
 }
 
 function SoftwareStrip({ curve }: { curve: Curve }) {
   if (!curve.compute_w.some((value) => value)) return null;
   return (
-    <Plot x={curve.time_s.map((value) => value / 60)} lines={[{ name: "software", colour: "cruise", y: curve.compute_w }]} legend={false} height={110}
-      x_title="Time [min]" y_title="Software [W]" description="The power of the software over the flight." />
+    <Plot
+      x={curve.time_s.map((value) => value / 60)}
+      lines={[{ name: "software", colour: "cruise", y: curve.compute_w }]}
+      legend={false}
+      height={110}
+      x_title="Time [min]"
+      y_title="Software [W]"
+      description="The power of the software over the flight."
+    />
   );
 }
 
 const export_formats = [
-  ["failsafe-ardupilot", "Failsafe, ArduPilot", ".parm"], ["failsafe-px4", "Failsafe, PX4", ".params"], ["failsafe-inav", "Failsafe, INAV", ".txt"],
-  ["failsafe-paparazzi", "Failsafe, Paparazzi", ".xml"], ["px4", "Estimator, PX4", ".params"], ["inav", "Estimator, INAV", ".txt"], ["paparazzi", "Estimator, Paparazzi", ".xml"],
+  [
+    "failsafe-ardupilot",
+    "Failsafe, ArduPilot",
+    ".parm",
+  ], ["failsafe-px4", "Failsafe, PX4", ".params"], ["failsafe-inav", "Failsafe, INAV", ".txt"],
+  [
+    "failsafe-paparazzi",
+    "Failsafe, Paparazzi",
+    ".xml",
+  ], ["px4", "Estimator, PX4", ".params"], ["inav", "Estimator, INAV", ".txt"], [
+    "paparazzi",
+    "Estimator, Paparazzi",
+    ".xml",
+  ],
 ] as const;
 
 function SaveButtons({ project, flown }: { project: Project; flown: FlownPlan }) {
@@ -219,12 +344,20 @@ function SaveButtons({ project, flown }: { project: Project; flown: FlownPlan })
         <button type="button" class="quiet" onClick={() => save(`${name}-mission.toml`, flown.mission, "text/plain")}>
           <Icon name="save" /> Mission
         </button>
-        <button type="button" class="quiet" onClick={() => void project.text("curve.csv").then((text) => save(`${name}-charge.csv`, text, "text/csv"))}>
+        <button
+          type="button"
+          class="quiet"
+          onClick={() => void project.text("curve.csv").then((text) => save(`${name}-charge.csv`, text, "text/csv"))}
+        >
           <Icon name="save" /> Charge (CSV)
         </button>
       </p>
       <p class="buttons">
-        <select aria-label="Format for the autopilot" value={format} onChange={(event) => setFormat(event.currentTarget.value)}>
+        <select
+          aria-label="Format for the autopilot"
+          value={format}
+          onChange={(event) => setFormat(event.currentTarget.value)}
+        >
           {export_formats.map(([id, words]) => (
             <option value={id}>{words}</option>
           ))}
@@ -252,16 +385,26 @@ function PacksTable({ simulation }: { simulation: Simulation }) {
   );
 }
 
-function BlockChoice({ blocks, options, change }: { blocks: PlanBlock[]; options: PlanOptions; change: (next: Partial<PlanOptions>) => void }) {
+function BlockChoice({ blocks, options, change }: {
+  blocks: PlanBlock[];
+  options: PlanOptions;
+  change: (next: Partial<PlanOptions>) => void;
+}) {
   if (blocks.length === 0) return null;
   const toggle = (name: string, on: boolean) =>
-    change({ blocks: blocks.map((one) => one.block).filter((one) => (one === name ? on : options.blocks.includes(one))) });
+    change({ blocks: blocks.map((one) => one.block).filter((one) => (one === name
+      ? on
+      : options.blocks.includes(one))) });
   return (
     <fieldset class="blocks">
       <legend>Blocks that are flown</legend>
       {blocks.map((one) => (
         <label>
-          <input type="checkbox" checked={options.blocks.includes(one.block)} onChange={(event) => toggle(one.block, event.currentTarget.checked)} /> {one.block}{" "}
+          <input
+            type="checkbox"
+            checked={options.blocks.includes(one.block)}
+            onChange={(event) => toggle(one.block, event.currentTarget.checked)}
+          /> {one.block}{" "}
           <span class="soft">{one.flown}{one.length_m > 0 ? `, ${distance(one.length_m)}` : ""}</span>
         </label>
       ))}
@@ -274,7 +417,10 @@ function NoPlan({ project, onDraw }: { project: Project; onDraw: () => void }) {
     <div class="drop plan-drop">
       <Icon name="plan" size={48} />
       <p class="drop-title">Drop a plan or an area here</p>
-      <p class="soft">.plan of QGroundControl, .waypoints of Mission Planner, a flight plan of Paparazzi (.xml), .kml, .geojson, or the folder of a mission</p>
+      <p class="soft">
+        .plan of QGroundControl, .waypoints of Mission Planner, a flight plan of Paparazzi (.xml), .kml, .geojson, or
+        the folder of a mission
+      </p>
       <p class="drop-buttons">
         <FilesButton label="Choose a plan" class="primary" onFiles={(files) => void takeFiles(project, files)} />{" "}
         <button type="button" class="quiet" onClick={onDraw}>
@@ -292,7 +438,8 @@ function usePlanOptions(project: Project, state: State) {
   const open = useCallback(async (plan: string) => {
     const found = await blocksOf(project, plan);
     setBlocks(found);
-    const survey = found.find((one) => /survey/i.test(one.block)) ?? [...found].sort((a, b) => b.length_m - a.length_m)[0];
+    const survey = found.find((one) =>
+      /survey/i.test(one.block)) ?? [...found].sort((a, b) => b.length_m - a.length_m)[0];
     setOptions({ plan, blocks: survey ? [survey.block] : [], packs: 1 });
   }, [project]);
   const newest = state.plans[state.plans.length - 1];
@@ -327,7 +474,13 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
   const shown = flown && options && flown.options.plan === options.plan && !failed ? flown : null;
   return (
     <>
-      {!shown && <h1>{drawing ? "Click the corners of the area" : options ? (failed ? `${fileName(options.plan)}: not flown` : `${fileName(options.plan)}: computing`) : "Does a plan fit?"}</h1>}
+      {!shown && <h1>
+        {drawing
+          ? "Click the corners of the area"
+          : options
+            ? (failed ? `${fileName(options.plan)}: not flown` : `${fileName(options.plan)}: computing`)
+            : "Does a plan fit?"}
+      </h1>}
       {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
       {shown && <Band curve={shown.curve} asking={asking} />}
       <div class={`plan${options || drawing ? "" : " alone"}`}>
@@ -338,14 +491,28 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             <Card title={drawing ? "Draw an area" : fileName(options?.plan ?? "")} aside={
               drawing ? (
                 <span class="buttons">
-                  <button type="button" class="quiet" disabled={drawing.length === 0} onClick={() => setDrawing(drawing.slice(0, -1))}>Undo</button>
-                  <button type="button" class="primary" disabled={drawing.length < 3} onClick={() => void finish()}>Done</button>
+                  <button
+                    type="button"
+                    class="quiet"
+                    disabled={drawing.length === 0}
+                    onClick={() => setDrawing(drawing.slice(0, -1))}
+                  >Undo</button>
+                  <button
+                    type="button"
+                    class="primary"
+                    disabled={drawing.length < 3}
+                    onClick={() => void finish()}
+                  >Done</button>
                   <button type="button" class="quiet" onClick={() => setDrawing(null)}>Cancel</button>
                 </span>
               ) : (
                 <span class="buttons">
                   {state.plans.length > 1 && (
-                    <select aria-label="Plan" value={options?.plan} onChange={(event) => void open(event.currentTarget.value)}>
+                    <select
+                      aria-label="Plan"
+                      value={options?.plan}
+                      onChange={(event) => void open(event.currentTarget.value)}
+                    >
                       {state.plans.map((one) => <option value={one}>{fileName(one)}</option>)}
                     </select>
                   )}
@@ -367,10 +534,18 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           )}
         </div>
         {options && !drawing && (
-          <PlanSide project={project} aircraft={aircraft} answered={answered} flown={shown} options={options} blocks={blocks} change={change} />
+          <PlanSide
+            project={project}
+            aircraft={aircraft}
+            answered={answered}
+            flown={shown}
+            options={options}
+            blocks={blocks}
+            change={change}
+          />
         )}
       </div>
-      <Command line={options ? planCommand(aircraft.folder, options, answered?.question.payload_kg) : `flightwatt new-mission --model ${aircraft.folder}/model.toml --battery ${aircraft.folder}/answer-pack.toml --plan FILE`} />
+      <Command line={planCommand(aircraft.folder, options ?? no_plan, answered?.question.payload_kg)} />
     </>
   );
 }
@@ -413,7 +588,12 @@ function PlanSide({ project, aircraft, answered, flown, options, blocks, change 
         return (
           <button type="button" class="help" onClick={() => change(next)}>
             <Mark grade={verdict.grade} />
-            <span><b>{words}</b><span class="under">{verdict.chance ? `${verdict.title.toLowerCase()}, ${verdict.chance}` : verdict.title.toLowerCase()}</span></span>
+            <span>
+              <b>{words}</b>
+              <span class="under">
+                {verdict.chance ? `${verdict.title.toLowerCase()}, ${verdict.chance}` : verdict.title.toLowerCase()}
+              </span>
+            </span>
             <Icon name="arrow" />
           </button>
         );
@@ -423,7 +603,12 @@ function PlanSide({ project, aircraft, answered, flown, options, blocks, change 
       {flown && <SaveButtons project={project} flown={flown} />}
       {flown && (
         <Folded title="What it rests on">
-          <Facts rows={[["Power", flown.curve.simulation.power_model?.model], ["Off", error != null ? quantity(error, 1, "%") : null]]} />
+          <Facts
+            rows={[
+              ["Power", flown.curve.simulation.power_model?.model],
+              ["Off", error != null ? quantity(error, 1, "%") : null],
+            ]}
+          />
           <ul class="rests">{flown.remarks.map((one) => <li>{one}</li>)}</ul>
         </Folded>
       )}

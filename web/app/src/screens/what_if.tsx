@@ -25,12 +25,72 @@ function slidersOf(measured: Answered, question: Question): SliderOf[] {
   const capacity = answer.capacity_ah.value ?? 5;
   const most = Math.ceil(2 * capacity);
   return [
-    { name: "reserve", key: "reserve", label: "Reserve", unit: "%", decimals: 0, basis: "assumption", range: [0, 50, 1], base: 20, base_words: "20 %" },
-    { name: "payload", key: "payload_kg", label: "Payload", unit: "kg", decimals: 2, basis: "physics", range: [0, 3, 0.05], base: null, base_words: "as flown" },
-    { name: "wind", key: "wind", label: "Wind", unit: "m/s", decimals: 1, basis: "assumption", range: [0, 15, 0.5], base: 0, base_words: "calm" },
-    { name: "airspeed", key: "airspeed", label: "Airspeed", unit: "m/s", decimals: 1, basis: "physics", range: [1, Math.max(10, Math.ceil(2 * (speed ?? 5))), 0.5], base: null, base_words: answer.is_hover ? "hover" : speed != null ? `as flown, ${quantity(speed, 1, "m/s")}` : "as flown" },
-    { name: "capacity", key: "capacity_ah", label: "Pack capacity", unit: "Ah", decimals: 1, basis: "measured", range: [0.1 * Math.ceil(2.5 * capacity), most, 0.1], base: question.capacity_ah == null ? answer.capacity_ah.value : null, base_words: answer.capacity_ah.value != null ? quantity(answer.capacity_ah.value, 1, "Ah") : "unknown" },
-    { name: "temperature", key: "temperature", label: "Pack temperature", unit: "°C", decimals: 0, basis: "assumption", range: [-20, 45, 1], base: null, base_words: "as flown" },
+    {
+      name: "reserve",
+      key: "reserve",
+      label: "Reserve",
+      unit: "%",
+      decimals: 0,
+      basis: "assumption",
+      range: [0, 50, 1],
+      base: 20,
+      base_words: "20 %",
+    },
+    {
+      name: "payload",
+      key: "payload_kg",
+      label: "Payload",
+      unit: "kg",
+      decimals: 2,
+      basis: "physics",
+      range: [0, 3, 0.05],
+      base: null,
+      base_words: "as flown",
+    },
+    {
+      name: "wind",
+      key: "wind",
+      label: "Wind",
+      unit: "m/s",
+      decimals: 1,
+      basis: "assumption",
+      range: [0, 15, 0.5],
+      base: 0,
+      base_words: "calm",
+    },
+    {
+      name: "airspeed",
+      key: "airspeed",
+      label: "Airspeed",
+      unit: "m/s",
+      decimals: 1,
+      basis: "physics",
+      range: [1, Math.max(10, Math.ceil(2 * (speed ?? 5))), 0.5],
+      base: null,
+      base_words: answer.is_hover ? "hover" : speed != null ? `as flown, ${quantity(speed, 1, "m/s")}` : "as flown",
+    },
+    {
+      name: "capacity",
+      key: "capacity_ah",
+      label: "Pack capacity",
+      unit: "Ah",
+      decimals: 1,
+      basis: "measured",
+      range: [0.1 * Math.ceil(2.5 * capacity), most, 0.1],
+      base: question.capacity_ah == null ? answer.capacity_ah.value : null,
+      base_words: answer.capacity_ah.value != null ? quantity(answer.capacity_ah.value, 1, "Ah") : "unknown",
+    },
+    {
+      name: "temperature",
+      key: "temperature",
+      label: "Pack temperature",
+      unit: "°C",
+      decimals: 0,
+      basis: "assumption",
+      range: [-20, 45, 1],
+      base: null,
+      base_words: "as flown",
+    },
   ];
 }
 
@@ -49,24 +109,35 @@ function hintOf(aircraft: Aircraft, slider: SliderOf): string {
   const time = changeOf(mainTime(step.answer).value, mainTime(base.answer).value, duration);
   const way = changeOf(step.answer.distance_m.value, base.answer.distance_m.value, distance);
   const change = /wind|airspeed/.test(slider.name) && way ? way : time;
-  return change && value != null ? `${quantity(value, slider.decimals === 2 ? 1 : slider.decimals, slider.unit)}: ${change}` : "";
+  return change && value != null
+    ? `${quantity(value, slider.decimals === 2 ? 1 : slider.decimals, slider.unit)}: ${change}`
+    : "";
 }
 
 export function WhatIf({ project, aircraft, asking }: { project: Project; aircraft: Aircraft; asking: boolean }) {
   const { measured, question, now } = aircraft;
   if (!measured || !now) return null;
-  const set = (key: keyof Question, value: number | undefined) => project.ask(aircraft.id, { ...question, [key]: value });
+  const set = (key: keyof Question, value: number | undefined) => project.ask(
+    aircraft.id,
+    { ...question, [key]: value },
+  );
   return (
     <section class="card what-if" aria-label="What if">
       <header class="card-head">
         <h2>What if</h2>
         <button type="button" class="quiet" disabled={isMeasured(question)}
-          onClick={() => project.ask(aircraft.id, question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {})}>
+          onClick={() => project.ask(
+            aircraft.id,
+            question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {},
+          )}>
           As measured
         </button>
       </header>
       <p class="what-if-result" aria-hidden="true">
-        <b>{duration(mainTime(now.answer).value)}</b> {now.answer.distance_m.value != null && <b>· {distance(now.answer.distance_m.value)}</b>}{" "}
+        <b>{duration(mainTime(now.answer).value)}</b> {now.answer.distance_m.value != null && <b>
+          ·{" "}
+          {distance(now.answer.distance_m.value)}
+        </b>}{" "}
         <span class="soft">{asking ? "computing" : now.answer.time_in_air_95_s.value != null ? "95 of 100" : ""}</span>
       </p>
       {slidersOf(measured, question).map((slider) => {
@@ -94,7 +165,9 @@ export function WhatIf({ project, aircraft, asking }: { project: Project; aircra
         </label>
       )}
       <p class="key">
-        <span class="basis measured" /> measured <span class="basis physics" /> physics <span class="basis assumption" /> assumption
+        <span class="basis measured" /> measured <span class="basis physics" /> physics <span
+          class="basis assumption"
+        /> assumption
       </p>
     </section>
   );

@@ -23,7 +23,11 @@ function warningOf(record: LogRecord): string {
 /// Returns a line with what became of its log; `owner` is the aircraft that flew it.
 function judged(line: LogLine, record: LogRecord, owner: string | undefined, why_not_fitted: string): LogLine {
   const why = why_not_fitted || record.why_not_fitted || record.lacks_power;
-  if (why || !owner) return { ...line, state: "not", reason: why || warningOf(record) || "no flight with measured power" };
+  if (why || !owner) return {
+    ...line,
+    state: "not",
+    reason: why || warningOf(record) || "no flight with measured power",
+  };
   const excluded = record.measured?.excluded ?? [];
   const parts = [...new Set(excluded.map((one) => `${one.phase} not used: ${one.reason}`))];
   if (parts.length > 0) return { ...line, state: "part", reason: parts.join("; ") };
@@ -31,7 +35,10 @@ function judged(line: LogLine, record: LogRecord, owner: string | undefined, why
 }
 
 /// Returns the lines of all logs, each with its aircraft, or none where it is not used.
-export function linesOf({ batch, manifest, records }: BatchFound, waiting: LogLine[]): { line: LogLine; owner?: string }[] {
+export function linesOf(
+  { batch, manifest, records }: BatchFound,
+  waiting: LogLine[],
+): { line: LogLine; owner?: string }[] {
   const unnamed = new Map(waiting.map((line) => [line.path, line]));
   const results = new Map(batch.logs.map((log) => [log.flight, log]));
   const owners = new Map(batch.aircraft.flatMap((one) => one.flights.map((flight) => [flight, one.aircraft] as const)));
@@ -40,11 +47,19 @@ export function linesOf({ batch, manifest, records }: BatchFound, waiting: LogLi
     unnamed.delete(log);
     const line: LogLine = { ...known, flight };
     const record = records.get(flight);
-    if (!record) return { line: { ...line, state: "not" as const, reason: withoutPath(results.get(flight)?.error ?? "", log) } };
+    if (!record) return { line: {
+      ...line,
+      state: "not" as const,
+      reason: withoutPath(results.get(flight)?.error ?? "", log),
+    } };
     const result = judged(line, record, owners.get(flight), why_not_fitted);
     return { line: result, owner: result.state === "not" ? undefined : owners.get(flight) };
   });
-  const silent = [...unnamed.values()].map((line) => ({ line: { ...line, state: "not" as const, reason: "the program does not name it" } }));
+  const silent = [...unnamed.values()].map((line) => ({ line: {
+    ...line,
+    state: "not" as const,
+    reason: "the program does not name it",
+  } }));
   return [...found, ...silent];
 }
 
@@ -58,7 +73,15 @@ export function aircraftOf(
     const record = records.get(flights[0] ?? "");
     const logs = lines.filter(({ owner }) => owner === id).map(({ line }) => line);
     logs.sort((a, b) => naturally(a.path, b.path));
-    return { id, name: record?.aircraft_name || id, kind: record?.kind ?? "", folder, logs, question: questionOf(id), hints: {} };
+    return {
+      id,
+      name: record?.aircraft_name || id,
+      kind: record?.kind ?? "",
+      folder,
+      logs,
+      question: questionOf(id),
+      hints: {},
+    };
   });
   return result.filter((one) => one.logs.length > 0).sort((a, b) => b.logs.length - a.logs.length);
 }

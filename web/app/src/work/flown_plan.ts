@@ -46,19 +46,30 @@ export function newMissionArguments(folder: string, options: PlanOptions, payloa
   ];
 }
 
+/// Returns the command that sets keys of the mission, or nothing.
+function editCommand({ spacing, heading }: PlanOptions): string {
+  const keys = { spacing_m: spacing, heading_deg: heading };
+  const edits = Object.entries(keys).filter(([, value]) => value != null);
+  const expressions = edits.map(([key, value]) => `-e ${quoted(`s/^${key} = .*/${key} = ${value}/`)}`);
+  return expressions.length > 0 ? ` && sed -i ${expressions.join(" ")} plan.toml` : "";
+}
+
 /// Returns the commands that give the same.
 export function planCommand(folder: string, options: PlanOptions, payload_kg?: number): string {
-  if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${quoted(options.plan.replace(/^missions\//, ""))} --samples 1000`;
+  const samples = options.packs > 1 ? "" : " --samples 1000";
+  const mission = quoted(options.plan.replace(/^missions\//, ""));
+  if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${mission}${samples}`;
   const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, payload_kg);
-  const lines = options.spacing != null || options.heading != null;
-  const keys = [options.spacing != null ? `spacing_m = ${options.spacing}` : "", options.heading != null ? `heading_deg = ${options.heading}` : ""];
-  const edit = lines ? ` && sed -i ${keys.filter(Boolean).map((key) => quoted(`s/^${key.split(" ")[0]} = .*/${key}/`)).join(" -e ").replace(/^/, "-e ")} plan.toml` : "";
-  return `flightwatt ${args.map(quoted).join(" ")} -o plan.toml${edit} && flightwatt simulate plan.toml${options.packs > 1 ? "" : " --samples 1000"}`;
+  const make = `flightwatt ${args.map(quoted).join(" ")} -o plan.toml`;
+  return `${make}${editCommand(options)} && flightwatt simulate plan.toml${samples}`;
 }
 
 function remarksOf(err: string): string[] {
   const lines = err.split("\n").filter((line) => /: (warning|chosen|note): /.test(line));
-  return [...new Set(lines.map((line) => line.replace(/^flightwatt[\w-]*: (warning|chosen|note): /, "").replace(/^plan-mission: /, "")))];
+  return [...new Set(lines.map((line) => line.replace(
+    /^flightwatt[\w-]*: (warning|chosen|note): /,
+    "",
+  ).replace(/^plan-mission: /, "")))];
 }
 
 function keyOf(text: string, key: string): number | null {
@@ -66,9 +77,21 @@ function keyOf(text: string, key: string): number | null {
   return found ? Number(found[1]) : null;
 }
 
-async function missionOf(engine: Engine, folder: string, options: PlanOptions, payload_kg?: number): Promise<{ file: string; err: string } | string> {
+async function missionOf(
+  engine: Engine,
+  folder: string,
+  options: PlanOptions,
+  payload_kg?: number,
+): Promise<{ file: string; err: string } | string> {
   if (/\.toml$/i.test(options.plan)) return { file: options.plan, err: "" };
-  const made = await engine.run([...newMissionArguments(folder, options, payload_kg), "-o", mission_name, "--force", "--name", "plan"]);
+  const made = await engine.run([
+    ...newMissionArguments(folder, options, payload_kg),
+    "-o",
+    mission_name,
+    "--force",
+    "--name",
+    "plan",
+  ]);
   if (made.code !== 0) return errorsOf(made);
   let text = new TextDecoder().decode(await engine.read(mission_name));
   if (options.spacing != null) text = text.replace(/^spacing_m = .*$/m, `spacing_m = ${options.spacing}`);
@@ -78,14 +101,24 @@ async function missionOf(engine: Engine, folder: string, options: PlanOptions, p
 }
 
 /// Flies a plan; returns why it cannot be flown where it cannot.
-export async function flyPlan(project: Project, aircraft: Aircraft, answered: Answered, options: PlanOptions): Promise<FlownPlan | string> {
+export async function flyPlan(
+  project: Project,
+  aircraft: Aircraft,
+  answered: Answered,
+  options: PlanOptions,
+): Promise<FlownPlan | string> {
   return project.withAnswer(aircraft.id, answered, async (engine) => {
     const { payload_kg } = answered.question;
     let made = await missionOf(engine, aircraft.folder, options, payload_kg);
     const flown = answered.answer.airspeed_m_per_s.value;
     // A model that does not know what airspeed costs is flown at the speed of its flights, as the program asks for.
     if (typeof made === "string" && /--airspeed/.test(made) && options.airspeed == null && flown != null)
-      made = await missionOf(engine, aircraft.folder, { ...options, airspeed: Math.round(10 * flown) / 10 }, payload_kg);
+      made = await missionOf(
+        engine,
+        aircraft.folder,
+        { ...options, airspeed: Math.round(10 * flown) / 10 },
+        payload_kg,
+      );
     if (typeof made === "string") return made;
     const curve = await project.curveOrError(made.file);
     if (typeof curve === "string") return curve;
@@ -96,9 +129,20 @@ export async function flyPlan(project: Project, aircraft: Aircraft, answered: An
     return {
       options, mission, curve,
       path: path.code === 0 && path.out ? (JSON.parse(path.out) as PathSummary) : null,
-      legs: texts(table, "leg").map((leg, i) => ({ leg, kind: kinds[i] ?? "", start_s: starts[i] ?? 0, duration_s: times[i] ?? 0 })),
+      legs: texts(table, "leg").map((leg, i) => ({
+        leg,
+        kind: kinds[i] ?? "",
+        start_s: starts[i] ?? 0,
+        duration_s: times[i] ?? 0,
+      })),
       remarks: remarksOf(`${made.err}\n${path.err}`),
-      is_area: /^area = /m.test(mission), spacing: keyOf(mission, "spacing_m"), heading: keyOf(mission, "heading_deg"), airspeed: keyOf(mission, "airspeed_m_per_s"),
+      is_area: /^area = /m.test(mission), spacing: keyOf(mission, "spacing_m"), heading: keyOf(
+        mission,
+        "heading_deg",
+      ), airspeed: keyOf(
+        mission,
+        "airspeed_m_per_s",
+      ),
     };
   });
 }

@@ -15,8 +15,14 @@ type Json = { [key: string]: unknown };
 
 function ofGeoJson(value: unknown, shape: PlanShape) {
   const object = value as Json;
-  for (const inner of [...((object.features as unknown[]) ?? []), ...(object.geometry ? [object.geometry] : [])]) ofGeoJson(inner, shape);
-  const places = (list: unknown) => (list as number[][]).map(([longitude, latitude]): Place => [latitude ?? NaN, longitude ?? NaN]);
+  for (const inner of [
+    ...((object.features as unknown[]) ?? []),
+    ...(object.geometry ? [object.geometry] : []),
+  ]) ofGeoJson(inner, shape);
+  const places = (list: unknown) => (list as number[][]).map(([longitude, latitude]): Place => [
+    latitude ?? NaN,
+    longitude ?? NaN,
+  ]);
   if (object.type === "Polygon") shape.areas.push(places((object.coordinates as unknown[])[0]));
   if (object.type === "LineString") shape.lines.push(places(object.coordinates));
 }
@@ -27,7 +33,8 @@ function ofPlan(plan: Json, shape: PlanShape) {
   if (home) shape.home = [home[0] ?? NaN, home[1] ?? NaN];
   const line: Place[] = [];
   for (const item of (mission.items ?? []) as Json[]) {
-    const polygon = (item.polygon ?? (item.TransectStyleComplexItem as Json | undefined)?.polygon) as Place[] | undefined;
+    const polygon =
+      (item.polygon ?? (item.TransectStyleComplexItem as Json | undefined)?.polygon) as Place[] | undefined;
     if (polygon) shape.areas.push(polygon);
     const inside = ((item.TransectStyleComplexItem as Json | undefined)?.Items ?? [item]) as Json[];
     for (const one of inside) {
@@ -50,14 +57,23 @@ const metres_a_degree = 111_320;
 
 /// Waypoints of Paparazzi: latitude and longitude, or metres from the plan's origin.
 function ofFlightPlan(page: Document, shape: PlanShape) {
-  const degrees = (text: string | null) => Number((text ?? "").replace(/^([NESW])(.*)$/, (_, side, rest) => (/[SW]/.test(side) ? `-${rest}` : rest)));
+  const degrees = (text: string | null) => Number((text ?? "").replace(
+    /^([NESW])(.*)$/,
+    (_, side, rest) => (/[SW]/.test(side) ? `-${rest}` : rest),
+  ));
   const plan = page.querySelector("flight_plan");
-  const [latitude, longitude] = [degrees(plan?.getAttribute("lat0") ?? null), degrees(plan?.getAttribute("lon0") ?? null)];
+  const [latitude, longitude] = [
+    degrees(plan?.getAttribute("lat0") ?? null),
+    degrees(plan?.getAttribute("lon0") ?? null),
+  ];
   for (const point of page.querySelectorAll("waypoints > waypoint")) {
     const at = (name: string) => Number(point.getAttribute(name));
     const place: Place = point.hasAttribute("lat")
       ? [degrees(point.getAttribute("lat")), degrees(point.getAttribute("lon"))]
-      : [latitude + at("y") / metres_a_degree, longitude + at("x") / (metres_a_degree * Math.cos((latitude * Math.PI) / 180))];
+      : [
+        latitude + at("y") / metres_a_degree,
+        longitude + at("x") / (metres_a_degree * Math.cos((latitude * Math.PI) / 180)),
+      ];
     if (isPlace(place)) shape.named.push({ name: point.getAttribute("name") ?? "", place });
   }
 }

@@ -30,16 +30,31 @@ const names = (path: string) => path.split("/").pop() ?? path;
 /// Returns what a run printed as errors, without the program's name.
 export function errorsOf(result: RunResult): string {
   const lines = result.err.split("\n").filter((line) => /: error: /.test(line));
-  return lines.map((line) => line.replace(/^flightwatt[\w-]*: error: /, "").replaceAll(`${logs_folder}/`, "")).join("\n") ||
+  return lines.map((line) => line.replace(
+    /^flightwatt[\w-]*: error: /,
+    "",
+  ).replaceAll(`${logs_folder}/`, "")).join("\n") ||
     result.err.trim().split("\n").pop() || `it ended with code ${result.code}`;
 }
 
 export class Project {
   state: State = {
-    ready: false, failed: "", aircraft: [], chosen: "", unused: [], waiting: [], plans: [], progress: null, read_s: null, busy: false,
+    ready: false,
+    failed: "",
+    aircraft: [],
+    chosen: "",
+    unused: [],
+    waiting: [],
+    plans: [],
+    progress: null,
+    read_s: null,
+    busy: false,
   };
   private listeners = new Set<() => void>();
-  private readonly queue = new WorkQueue((error) => this.set({ failed: error.message, progress: null }), () => this.set({ busy: false }));
+  private readonly queue = new WorkQueue(
+    (error) => this.set({ failed: error.message, progress: null }),
+    () => this.set({ busy: false }),
+  );
   private files = new Map<string, File | Blob>();
   private wanted = new Map<string, Question>();
   /// The question whose pack and mission are in an aircraft's folder.
@@ -134,10 +149,14 @@ export class Project {
       // A mission names its files, which stay beside it.
       const kind = missions.size > 0 ? "mission" : kindOf(safe, incoming);
       if (kind === "ignored") continue;
-      const wanted = kind === "mission" ? `${missions_folder}/${safe}` : kind === "plan" ? `${plans_folder}/${names(safe)}` : `${logs_folder}/${safe}`;
+      const wanted = kind === "mission"
+        ? `${missions_folder}/${safe}`
+        : kind === "plan" ? `${plans_folder}/${names(safe)}` : `${logs_folder}/${safe}`;
       if (this.isSame(wanted, file)) continue;
       const folder = wanted.slice(0, wanted.indexOf("/") + 1);
-      const place = kind === "plan" || kind === "mission" ? wanted : folder + freePath(wanted.slice(folder.length), (one) => this.files.has(folder + one));
+      const place = kind === "plan" || kind === "mission"
+        ? wanted
+        : folder + freePath(wanted.slice(folder.length), (one) => this.files.has(folder + one));
       await this.engine.write(place, file);
       this.files.set(place, file);
       stored.set(place, file);
@@ -145,7 +164,8 @@ export class Project {
     const plans = [...stored.keys()].filter((path) => !path.startsWith(`${logs_folder}/`));
     this.set({ failed: "", plans: await this.plans() });
     if (stored.size > plans.length) this.queue.add(() => this.readLogs(), true);
-    storage.keep(stored).catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
+    storage.keep(stored)
+      .catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
     return plans;
   }
 
@@ -202,7 +222,13 @@ export class Project {
   private async readLogs() {
     const paths = this.logs();
     const started = performance.now();
-    const waiting = paths.map((path): LogLine => ({ path, bytes: this.files.get(path)?.size ?? 0, state: "waiting", reason: "", flight: "" }));
+    const waiting = paths.map((path): LogLine => ({
+      path,
+      bytes: this.files.get(path)?.size ?? 0,
+      state: "waiting",
+      reason: "",
+      flight: "",
+    }));
     this.set({ waiting, progress: { text: "Reading", done: 0, of: paths.length }, busy: true, failed: "" });
     const result = await this.engine.run(this.batchArguments(), (line) => {
       const found = /\[(\d+)\/(\d+)\] (.*)$/.exec(line);
@@ -227,7 +253,11 @@ export class Project {
     if (result.code !== input_rejected) throw new Error(errorsOf(result));
     const { flights } = await this.json<Manifest>(`${out_folder}/batch.json`);
     const records = flights.map(({ flight }) => this.json<LogRecord>(`${out_folder}/flights/${flight}.record.json`));
-    const logs = (await Promise.all(records)).map(({ accepted, error }, i) => ({ flight: flights[i]?.flight ?? "", accepted, error }));
+    const logs = (await Promise.all(records)).map(({ accepted, error }, i) => ({
+      flight: flights[i]?.flight ?? "",
+      accepted,
+      error,
+    }));
     return { aircraft: [], logs };
   }
 
@@ -242,7 +272,8 @@ export class Project {
   private async showBatch(batch: Batch, waiting: LogLine[]) {
     const found = await this.readFound(batch);
     const lines = linesOf(found, waiting);
-    const questionOf = (id: string) => this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
+    const questionOf = (id: string) =>
+      this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
     const aircraft = aircraftOf(found, lines, questionOf);
     const unused = lines.filter(({ line }) => line.state === "not").map(({ line }) => line);
     this.set({ unused, aircraft });
@@ -273,7 +304,9 @@ export class Project {
   private async powerOf(folder: string, flight: string): Promise<number[]> {
     const { y } = track(await this.series(folder, flight), "power_w");
     const samples = 150;
-    return y.length <= samples ? y : Array.from({ length: samples }, (_, i) => y[Math.floor((i * y.length) / samples)] ?? 0);
+    return y.length <= samples
+      ? y
+      : Array.from({ length: samples }, (_, i) => y[Math.floor((i * y.length) / samples)] ?? 0);
   }
 
   async series(folder: string, flight: string): Promise<Csv> {
@@ -300,11 +333,21 @@ export class Project {
 
   isAsking(id: string): boolean {
     const aircraft = this.state.aircraft.find((one) => one.id === id);
-    return aircraft != null && !aircraft.failed && JSON.stringify(aircraft.question) !== JSON.stringify(aircraft.now?.question);
+    if (!aircraft || aircraft.failed) return false;
+    return JSON.stringify(aircraft.question) !== JSON.stringify(aircraft.now?.question);
   }
 
   answerArguments(aircraft: Aircraft, question: Question): string[] {
-    return ["answer", ...aircraft.logs.map((line) => line.path), ...optionsOf(question), "-o", aircraft.folder, "--no-page", "--json", "--quiet"];
+    return [
+      "answer",
+      ...aircraft.logs.map((line) => line.path),
+      ...optionsOf(question),
+      "-o",
+      aircraft.folder,
+      "--no-page",
+      "--json",
+      "--quiet",
+    ];
   }
 
   private async answer(id: string, question: Question) {
@@ -313,12 +356,18 @@ export class Project {
     const is_base = isMeasured(question);
     const base = aircraft.measured?.question;
     if (!is_base && (!base || base.capacity_ah !== question.capacity_ah)) {
-      const measured = await this.answered(aircraft, question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {});
+      const measured = await this.answered(
+        aircraft,
+        question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {},
+      );
       this.setAircraft(id, { measured: typeof measured === "string" ? undefined : measured, hints: {} });
     }
     const now = await this.answered(aircraft, question);
     if (typeof now === "string") this.setAircraft(id, { failed: now });
-    else this.setAircraft(id, is_base ? { measured: now, now, failed: undefined, hints: {} } : { now, failed: undefined });
+    else this.setAircraft(
+      id,
+      is_base ? { measured: now, now, failed: undefined, hints: {} } : { now, failed: undefined },
+    );
     if (is_base && typeof now !== "string" && now.seconds < quick_s) this.queue.add(() => this.hints(id), false);
   }
 
@@ -360,7 +409,9 @@ export class Project {
     const answer = (JSON.parse(result.out) as { aircraft: Answer[] }).aircraft[0];
     if (!answer) return errorsOf(result);
     if (answer.no_answer) return answer.no_answer;
-    const curve = answer.time_in_air_s.value != null ? await this.curve(`${aircraft.folder}/answer-mission.toml`) : null;
+    const curve = answer.time_in_air_s.value != null
+      ? await this.curve(`${aircraft.folder}/answer-mission.toml`)
+      : null;
     return { question, answer, curve, seconds: (performance.now() - started) / 1000 };
   }
 
@@ -374,7 +425,9 @@ export class Project {
     const [csv, band] = ["curve.csv", "band.csv"];
     const result = await this.engine.run(
       ["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv, "--samples", "400", "--samples-csv", band]);
-    const final = result.out ? result : await this.engine.run(["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv]);
+    const final = result.out
+      ? result
+      : await this.engine.run(["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv]);
     if (!final.out) return errorsOf(final);
     const simulation = JSON.parse(final.out) as Simulation;
     const curve = curveOf(parseCsv(await this.text(csv)), simulation);
