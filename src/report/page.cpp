@@ -5,6 +5,7 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
+#include "report/figures/run_program.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,9 +13,6 @@
 #include <system_error>
 
 #include <boost/algorithm/string/replace.hpp>
-#include <boost/process/args.hpp>
-#include <boost/process/io.hpp>
-#include <boost/process/system.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::report {
@@ -57,21 +55,6 @@ WebFiles read_files(const std::filesystem::path& folder, const char* style, std:
     }
     for (const auto* script : scripts) files.script += read_file(folder / script);
     return files;
-}
-
-/// Runs a program of the PATH with its output on standard error; false if it is not installed. Throws OutputError if it
-/// fails.
-bool run_program(std::vector<std::string> command) {
-    namespace bp = boost::process;
-    constexpr int not_installed = 127;
-    const auto program = command.front();
-    command.insert(command.begin(), {"-c", R"(command -v "$0" > /dev/null || exit 127; exec "$0" "$@")"});
-    std::error_code error;
-    const int code = bp::system("/bin/sh", bp::args(command), bp::std_out > stderr, error);
-    if (error) throw OutputError(fmt::format("cannot run {}: {}", program, error.message()));
-    if (code != 0 && code != not_installed)
-        throw OutputError(fmt::format("{} failed with exit code {}", program, code));
-    return code == 0;
 }
 
 /// Vega uses CSS pixels of 1/96 inch.
