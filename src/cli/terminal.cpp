@@ -84,7 +84,10 @@ bool standard_output_redraws() {
 
 void hide_progress() { progress_is_hidden = true; }
 
-std::FILE* standard_error_terminal() { return !progress_is_hidden && ::isatty(STDERR_FILENO) != 0 ? stderr : nullptr; }
+std::FILE* standard_error_terminal() {
+    const bool is_read = ::isatty(STDERR_FILENO) != 0 || std::getenv("FLIGHTWATT_PROGRESS") != nullptr;
+    return is_read && !progress_is_hidden ? stderr : nullptr;
+}
 
 ProgressBar::ProgressBar(std::string unit, std::FILE* terminal)
     : terminal_(terminal), unit_(std::move(unit)), recent_{{Clock::now(), 0}} {}

@@ -33,7 +33,7 @@ bool standard_output_redraws();
 /// From now on no progress is shown (--quiet).
 void hide_progress();
 
-/// The standard error, where it is a terminal and progress is shown.
+/// The standard error, where progress is shown: on a terminal, or to a program that set FLIGHTWATT_PROGRESS and reads it.
 std::FILE* standard_error_terminal();
 
 /// Progress on a terminal, "512/1000 logs, 12 s left", drawn at most ten times a second. It draws nothing

@@ -5,36 +5,18 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
+#include "report/run_program.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <system_error>
 #include <vector>
 
-#include <boost/process/args.hpp>
-#include <boost/process/io.hpp>
-#include <boost/process/system.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 
 namespace flightwatt::report {
 namespace {
-
-/// Runs a program of the PATH with its output on standard error; false if it is not installed. Throws OutputError if it
-/// fails.
-bool run_program(std::vector<std::string> command) {
-    namespace bp = boost::process;
-    constexpr int not_installed = 127;
-    const auto program = command.front();
-    command.insert(command.begin(), {"-c", R"(command -v "$0" > /dev/null || exit 127; exec "$0" "$@")"});
-    std::error_code error;
-    const int code = bp::system("/bin/sh", bp::args(command), bp::std_out > stderr, error);
-    if (error) throw OutputError(fmt::format("cannot run {}: {}", program, error.message()));
-    if (code != 0 && code != not_installed)
-        throw OutputError(fmt::format("{} failed with exit code {}", program, code));
-    return code == 0;
-}
 
 /// A new folder for files in the making, which is removed with them.
 class ScratchFolder {

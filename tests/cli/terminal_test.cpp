@@ -155,5 +155,18 @@ TEST(ProgressBar, SaysNothingWhereTheStandardErrorIsNoTerminal) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(ProgressBar, IsDrawnForAProgramThatReadsIt) {
+    if (::isatty(STDERR_FILENO) != 0) GTEST_SKIP() << "the standard error is a terminal here";
+    ASSERT_EQ(::setenv("FLIGHTWATT_PROGRESS", "1", 1), 0);
+    testing::internal::CaptureStderr();
+    {
+        ProgressBar progress("logs");
+        std::this_thread::sleep_for(beyond_interval);
+        progress.show(1, 2);
+    }
+    ::unsetenv("FLIGHTWATT_PROGRESS");
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::StartsWith("1/2 logs"));
+}
+
 }  // namespace
 }  // namespace flightwatt::cli

@@ -21,10 +21,8 @@ namespace {
 /// The card as sentences.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
     const auto card = mission_card(simulated, answer);
-    std::vector<std::string> lines{
-        fmt::format("{}: {}", capitalized(card.words), card.lead),
-        fmt::format("Probability: {}: {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
-                    card.probability)};
+    std::vector<std::string> lines{fmt::format("{}: {}", capitalized(card.words), card.lead),
+                                   fmt::format("Probability: {}: {}", card.aim, card.probability)};
     if (!card.reach.empty())
         lines.push_back(fmt::format("{}: {}{}", card.reach_name, card.reach,
                                     card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned)));

@@ -19,12 +19,12 @@ class Lines extends Fd {
   }
   override fd_write(data: Uint8Array) {
     this.pending += this.decoder.decode(data, { stream: true });
-    const parts = this.pending.split(/(?<=[\r\n])/);
-    this.pending = /[\r\n]$/.test(parts[parts.length - 1] ?? "") ? "" : parts.pop() ?? "";
-    for (const part of parts) {
-      if (part.endsWith("\n")) this.text += part;
-      if (part.trim() !== "") this.onLine(part.slice(0, -1));
+    const complete = this.pending.match(/[^\r\n]*[\r\n]/g) ?? [];
+    for (const line of complete) {
+      if (line.endsWith("\n")) this.text += line;
+      if (line.trim() !== "") this.onLine(line.slice(0, -1));
     }
+    this.pending = this.pending.slice(complete.reduce((length, line) => length + line.length, 0));
     return { ret: wasi.ERRNO_SUCCESS, nwritten: data.length };
   }
   end(): void {
