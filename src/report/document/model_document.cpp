@@ -164,6 +164,7 @@ Json model_json(const ReportModel& model) {
         fmt::format("Coefficients in W{}. xi is the angular frequency on a time axis of 28 units a phase.",
                     has_intervals ? ", with the 95 % intervals of the mean of these flights" : "");
     return {
+        {"is_of_missions", model.is_of_missions},
         {"origin", model.origin},
         {"description", model.model.description},
         {"fit", record_json(cli::FitOutput{&model.model, nullptr, true})},
