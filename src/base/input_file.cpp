@@ -180,7 +180,7 @@ std::filesystem::path executable_folder() {
     if (error) {  // no /proc, as in an empty root: the path that the program was started by
         const auto* started_by =
             reinterpret_cast<const char*>(::getauxval(AT_EXECFN));  // NOLINT(performance-no-int-to-ptr)
-        program = std::filesystem::canonical(started_by, error);
+        if (started_by != nullptr) program = std::filesystem::canonical(started_by, error);
     }
     return error ? std::filesystem::path() : program.parent_path();
 }
