@@ -277,7 +277,7 @@ export interface MissionDocument {
 export interface MissionPath {
   elements: {
     name: string;
-    kind: "leg" | "circles" | "hold";
+    kind: "leg" | "circles" | "hold" | "turn";
     start_s: number;
     duration_s: number;
     length_m: number | null;
