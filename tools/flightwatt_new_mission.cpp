@@ -8,6 +8,7 @@
 #include "cli/stage.h"
 #include "compute/profile_reader.h"
 #include "mission/mission_file.h"
+#include "mission/new_mission_path.h"
 #include "mission/new_mission_plan.h"
 #include "mission/new_mission_toml.h"
 #include "stages.h"

@@ -13,8 +13,8 @@
 #include "live/live_schedule.h"
 #include "live/live_state.h"
 #include "live/page_server.h"
+#include "live/playback.h"
 #include "live/recorder.h"
-#include "live/sources/datagrams.h"
 #include "report/page.h"
 #include "stages.h"
 #include "telemetry/log_configuration.h"
@@ -63,23 +63,26 @@ class Announcement {
         if (!arguments.announces) return;
         const auto [system, component] = parse_identity(arguments.announce_as);
         announcer_.emplace(system, component);
-        if (arguments.announce_to) datagrams_.emplace(*arguments.announce_to);
+        if (arguments.announce_to) target_ = live::open_mavlink_target(*arguments.announce_to);
     }
 
     void print_state(const live::LiveState& state) {
         if (!announcer_) return;
         for (const auto& packet : announcer_->packets(state, seconds_since(start_))) {
-            if (datagrams_)
-                datagrams_->send(packet);
-            else
+            if (!target_) {
                 source_.send(packet);
+                continue;
+            }
+            live::IncomingMessage message;
+            message.packet = packet;
+            target_(message);
         }
     }
 
   private:
     live::MessageSource& source_;
     std::optional<live::Announcer> announcer_;
-    std::optional<live::Datagrams> datagrams_;
+    live::PlaybackTarget target_;  ///< none: back over the link
     Clock::time_point start_ = Clock::now();
 };
 

@@ -1,4 +1,4 @@
-#include "report/run_program.h"
+#include "report/figures/run_program.h"
 
 // A browser starts no programs: as if none were installed.
 bool flightwatt::report::run_program(std::vector<std::string>) { return false; }

@@ -1,7 +1,7 @@
 #include "live/link_mission.h"
 
 #include "base/number.h"
-#include "telemetry/mavlink/frames.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +20,13 @@ constexpr double frame_above_sea = 0.0;
 }  // namespace
 
 bool LinkMission::receive(const IncomingMessage& message) {
-    const auto frame = telemetry::read_mavlink_frame(message.packet);
-    if (!frame || frame->message == nullptr) return false;
-    const auto& name = frame->message->layout.name;
-    const auto of = [&](const char* field) { return frame->number(field); };
+    const auto packet = telemetry::read_mavlink_packet(message.packet);
+    if (!packet) return false;
+    const auto& name = packet->name;
+    const auto of = [&](const char* field) { return packet->of.at(field); };
     if (name == "HEARTBEAT") {
         constexpr double ardupilot = 3.0;
-        system_ = frame->system;
+        system_ = packet->system;
         is_ardupilot_ = of("autopilot") == ardupilot;
     } else if (name == "HOME_POSITION") {
         constexpr double metre_per_unit = 1e-3;

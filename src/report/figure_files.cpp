@@ -5,7 +5,7 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
-#include "report/run_program.h"
+#include "report/figures/run_program.h"
 
 #include <algorithm>
 #include <map>

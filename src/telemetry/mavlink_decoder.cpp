@@ -86,6 +86,17 @@ void MavlinkDecoder::forward(const MavlinkFrame& frame, std::string_view entry, 
     on_message({sender, name, state.values, entry.substr(is_tlog_ ? tlog_time_bytes : 0, frame.bytes), unix_s});
 }
 
+std::optional<MavlinkPacket> read_mavlink_packet(std::string_view bytes) {
+    const auto frame = read_mavlink_frame(bytes);
+    if (!frame || frame->message == nullptr) return std::nullopt;
+    MavlinkPacket packet{frame->message->layout.name, frame->system, frame->component, {}, {}};
+    for (const auto& field : frame->message->layout.fields) {
+        packet.of[field.name] = field.number(frame->payload);
+        if (field.type == WireType::text) packet.text = frame->text(field.name);
+    }
+    return packet;
+}
+
 std::string tlog_entry(double unix_s, std::string_view packet) {
     const auto time_us = static_cast<std::uint64_t>(unix_s * 1e6 + 0.5);
     std::string entry;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,6 +65,18 @@ class MavlinkDecoder {
     std::string waiting_;
     std::size_t skipped_bytes_ = 0;
 };
+
+/// A packet of a message that FlightWatt knows.
+struct MavlinkPacket {
+    std::string name;         ///< of the message
+    std::uint8_t system = 0;  ///< of the sender
+    std::uint8_t component = 0;
+    std::map<std::string, double, std::less<>> of;  ///< the fields by their names; NaN for those that it does not have
+    std::string text = {};                          ///< its field of characters
+};
+
+/// Returns the packet that the bytes are; std::nullopt for other bytes, and for a message that FlightWatt does not know.
+std::optional<MavlinkPacket> read_mavlink_packet(std::string_view bytes);
 
 /// Returns an entry of a .tlog: the Unix time of reception and the packet.
 std::string tlog_entry(double unix_s, std::string_view packet);

@@ -82,7 +82,7 @@ TEST(PlanCheck, NamesTheLegOnWhichItFails) {
 
 /// Each remedy that suffices does so when it is asked for.
 TEST(PlanCheck, HelpsWithWhatSuffices) {
-    const auto question = lines_of(25.0);
+    const auto question = lines_of(30.0);
     const auto check = check_plan(question);
     ASSERT_NE(check.fit, PlanFit::yes);
     const auto kinds = [](const char* kind) { return Contains(Field(&PlanRemedy::kind, kind)); };

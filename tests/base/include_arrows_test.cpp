@@ -47,7 +47,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
     return layout;
 }
 
-constexpr std::size_t most_public_headers = 18;
+constexpr std::size_t most_public_headers = 19;
 
 struct IncludeLine {
     std::filesystem::path file;  ///< below the project's folder

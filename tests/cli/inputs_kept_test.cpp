@@ -235,18 +235,52 @@ void make_alias(Alias alias, const std::filesystem::path& input, const std::file
 }
 
 /// The metavariables of the help that name no file.
-const std::set<std::string> no_files{
-    "AIRCRAFT",    "N",     "S",       "X",       "P",       "M",           "W",
-    "A",           "AH",    "MB",      "HOW",     "NAME",    "TITLE",       "FONT",
-    "HEIGHT",      "ID",    "FLIGHT",  "A,B",     "KIND",    "A,B,power_w", "FLIGHT[:PHASE]=W",
-    "NAME[,NAME]", "S|now", "M_PER_S", "PERCENT", "COMMAND", "PORT",        "ADDRESS:PORT",
-    "DEVICE:BAUD", "DATE",  "PATTERN", "TARGET",  "WIDTH",   "DEG",         "SPEED@DEG",
-    "TIME",        "KG",    "LINK",    "C"};
+const std::set<std::string> no_files{"AIRCRAFT",
+                                     "N",
+                                     "S",
+                                     "X",
+                                     "P",
+                                     "M",
+                                     "W",
+                                     "A",
+                                     "AH",
+                                     "MB",
+                                     "HOW",
+                                     "NAME",
+                                     "TITLE",
+                                     "FONT",
+                                     "HEIGHT",
+                                     "ID",
+                                     "FLIGHT",
+                                     "A,B",
+                                     "KIND",
+                                     "A,B,power_w",
+                                     "FLIGHT[:PHASE]=W",
+                                     "NAME[,NAME]",
+                                     "S|now",
+                                     "M_PER_S",
+                                     "PERCENT",
+                                     "COMMAND",
+                                     "PORT",
+                                     "ADDRESS:PORT",
+                                     "DEVICE:BAUD",
+                                     "DATE",
+                                     "PATTERN",
+                                     "TARGET",
+                                     "WIDTH",
+                                     "DEG",
+                                     "SPEED@DEG",
+                                     "TIME",
+                                     "KG",
+                                     "LINK",
+                                     "C",
+                                     "SYSTEM:COMPONENT",
+                                     "LAT,LON"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",
-                                    "--path-from",  "--follow",  "--log",     "--messages", "--profile",
-                                    "--files-from", "--outline", "--columns", "--plan",     "--packs-file"};
+const std::set<std::string> reading{
+    "--published", "--model",   "--mission",    "--disturb", "--battery", "--path-from", "--follow",     "--log",
+    "--messages",  "--profile", "--files-from", "--outline", "--columns", "--plan",      "--packs-file", "--from"};
 
 class InputsKept : public testing::Test {
   protected:

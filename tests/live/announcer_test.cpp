@@ -1,6 +1,6 @@
 #include "live/announcer.h"
 
-#include "telemetry/mavlink/frames.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <cmath>
 
@@ -17,14 +17,14 @@ using testing::IsEmpty;
 std::vector<std::string> told(Announcer& announcer, const LiveState& state, double now_s) {
     std::vector<std::string> told;
     for (const auto& packet : announcer.packets(state, now_s)) {
-        const auto frame = telemetry::read_mavlink_frame(packet).value();
-        const auto& name = frame.message->layout.name;
-        EXPECT_EQ(frame.system, 7);
-        EXPECT_EQ(frame.component, 191);
+        const auto read = telemetry::read_mavlink_packet(packet).value();
+        const auto& name = read.name;
+        EXPECT_EQ(read.system, 7);
+        EXPECT_EQ(read.component, 191);
         if (name == "NAMED_VALUE_FLOAT")
-            told.push_back(frame.text("name") + " " + std::to_string(std::lround(10.0 * frame.number("value"))));
+            told.push_back(read.text + " " + std::to_string(std::lround(10.0 * read.of.at("value"))));
         else if (name == "STATUSTEXT")
-            told.push_back(std::to_string(std::lround(frame.number("severity"))) + " " + frame.text("text"));
+            told.push_back(std::to_string(std::lround(read.of.at("severity"))) + " " + read.text);
         else
             told.push_back(name);
     }

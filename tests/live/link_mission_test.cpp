@@ -1,7 +1,7 @@
 #include "live/link_mission.h"
 
 #include "helpers/mavlink_packets.h"
-#include "telemetry/mavlink/frames.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,10 +33,10 @@ std::string item(test::MavlinkSender& vehicle, std::uint16_t seq, double latitud
 std::vector<std::string> asked(LinkMission& mission, double now_s) {
     std::vector<std::string> asked;
     for (const auto& packet : mission.requests(now_s)) {
-        const auto frame = telemetry::read_mavlink_frame(packet).value();
-        const auto& name = frame.message->layout.name;
-        EXPECT_EQ(frame.number("target_system"), 1.0);
-        asked.push_back(name + (name == "MISSION_REQUEST_INT" ? std::to_string(std::lround(frame.number("seq"))) : ""));
+        const auto read = telemetry::read_mavlink_packet(packet).value();
+        const auto& name = read.name;
+        EXPECT_EQ(read.of.at("target_system"), 1.0);
+        asked.push_back(name + (name == "MISSION_REQUEST_INT" ? std::to_string(std::lround(read.of.at("seq"))) : ""));
     }
     return asked;
 }

@@ -56,7 +56,8 @@ TEST(MissionsDocument, HasCardCurveBandAndScheduleOfEachMission) {
 TEST(MissionsDocument, DrawsThePathWithTheChargeAlongIt) {
     const auto file = test::source_dir() / "missions/synthetic/survey-path.toml";
     LatexTables tables;
-    const auto path = missions_json(findings_of(simulate_for_report({mission::read_mission(file)})), tables)[0]["path"];
+    const auto path = missions_json(
+        findings_of(simulate_for_report({mission::read_mission(file, {true, std::nullopt})})), tables)[0]["path"];
     ASSERT_TRUE(path.is_object());
     EXPECT_GT(path["elements"].size(), 2U);
     for (const auto* column : {"east_m", "north_m", "soc_percent"})

@@ -1,4 +1,4 @@
-#include "report/run_program.h"
+#include "report/figures/run_program.h"
 
 #include "base/error.h"
 
