@@ -56,7 +56,7 @@ std::pair<std::uint8_t, std::uint8_t> parse_identity(std::string_view text) {
     return {static_cast<std::uint8_t>(*system), static_cast<std::uint8_t>(*component)};
 }
 
-/// Tells ground stations of the prediction, over the link or to an address of its own.
+/// Sends the prediction to ground stations, over the link or to an address of its own.
 class Announcement {
   public:
     Announcement(const WatchArguments& arguments, live::MessageSource& source) : source_(source) {
@@ -340,7 +340,7 @@ with its source, or by a signal, and then prints its last prediction. The source
                 {.needs = {"mavlink"}});
     options.add(
         "announce", arguments.announces,
-        "tell the ground station by MAVLink: fw_land, fw_home, fw_resv once a second, a text when an alarm changes",
+        "send to the ground station by MAVLink: fw_land, fw_home, fw_resv once a second, a text when an alarm changes",
         {.needs = {"mavlink"}});
     options.add("announce-to", arguments.announce_to, {.value = "ADDRESS:PORT", .needs = {"announce"}},
                 "send that to this UDP address instead of back over the link");

@@ -72,7 +72,7 @@ async function writeSite(folder, script, style, module) {
   for (const [name, content] of Object.entries({ ...files, "service-worker.js": worker })) await writeFile(path.join(folder, name), content);
 }
 
-/// Writes flightwatt.html and site/ beside the bundle in a folder.
+/// Writes flightwatt.html and site/ into the folder of the bundle.
 export async function writePages(folder, module) {
   const [script, style] = await Promise.all(["app.js", "app.css"].map((name) => readFile(path.join(folder, name), "utf8")));
   const one = onePage(script, style, module);

@@ -54,10 +54,10 @@ void Announcer::add_values(const LiveState& state, double now_s, std::vector<std
         add("fw_resv", units::minute_from_second(*state.battery->time_to_reserve_s));
 }
 
-/// A higher grade is told at once, any other change after a while, so that none that flickers fills a screen.
+/// A higher grade is announced at once, any other change after a while, so that one that flickers does not fill a screen.
 void Announcer::add_texts(const LiveState& state, double now_s, std::vector<std::string>& packets) {
     constexpr double min_interval_s = 5.0;
-    const auto tell = [&](const std::string& kind, const std::string& grade, const std::string& text) {
+    const auto announce = [&](const std::string& kind, const std::string& grade, const std::string& text) {
         auto& last = announced_[kind];
         const bool is_worse = last.grade.empty() || grade == "alarm";
         if (grade == last.grade || (!is_worse && now_s < last.at_s + min_interval_s)) return;
@@ -65,10 +65,11 @@ void Announcer::add_texts(const LiveState& state, double now_s, std::vector<std:
         packets.push_back(sender_.packet("STATUSTEXT", {{"severity", severity_of(grade)}}, fitting(text)));
     };
     for (const auto& alarm : state.alarms)
-        tell(alarm.kind, alarm.grade, fmt::format("FlightWatt {}: {}", alarm.grade, alarm.action));
+        announce(alarm.kind, alarm.grade, fmt::format("FlightWatt {}: {}", alarm.grade, alarm.action));
     for (const auto& [kind, last] : announced_) {
         const bool is_raised = std::ranges::find(state.alarms, kind, &LiveAlarm::kind) != state.alarms.end();
-        if (!is_raised && !last.grade.empty()) tell(kind, "", fmt::format("FlightWatt: no {} alarm any more", kind));
+        if (!is_raised && !last.grade.empty())
+            announce(kind, "", fmt::format("FlightWatt: no {} alarm any more", kind));
     }
 }
 

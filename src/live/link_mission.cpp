@@ -64,7 +64,7 @@ std::vector<std::string> LinkMission::requests(double now_s) {
     return packets;
 }
 
-/// ArduPilot's first item is its home; other autopilots tell it apart.
+/// ArduPilot's first item is its home; other autopilots keep it apart from the items.
 std::string LinkMission::waypoints() const {
     std::string text = "QGC WPL 110\n";
     const auto add = [&](std::size_t number, const Item& item) {

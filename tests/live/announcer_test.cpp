@@ -14,21 +14,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 /// "HEARTBEAT", "fw_land 23.5", "4 text" of each packet.
-std::vector<std::string> told(Announcer& announcer, const LiveState& state, double now_s) {
-    std::vector<std::string> told;
+std::vector<std::string> announced(Announcer& announcer, const LiveState& state, double now_s) {
+    std::vector<std::string> announced;
     for (const auto& packet : announcer.packets(state, now_s)) {
         const auto read = telemetry::read_mavlink_packet(packet).value();
         const auto& name = read.name;
         EXPECT_EQ(read.system, 7);
         EXPECT_EQ(read.component, 191);
         if (name == "NAMED_VALUE_FLOAT")
-            told.push_back(read.text + " " + std::to_string(std::lround(10.0 * read.of.at("value"))));
+            announced.push_back(read.text + " " + std::to_string(std::lround(10.0 * read.of.at("value"))));
         else if (name == "STATUSTEXT")
-            told.push_back(std::to_string(std::lround(read.of.at("severity"))) + " " + read.text);
+            announced.push_back(std::to_string(std::lround(read.of.at("severity"))) + " " + read.text);
         else
-            told.push_back(name);
+            announced.push_back(name);
     }
-    return told;
+    return announced;
 }
 
 LiveState predicted_state() {
@@ -42,33 +42,34 @@ LiveState predicted_state() {
     return state;
 }
 
-TEST(Announcer, TellsKnownValuesOnceASecond) {
+TEST(Announcer, SendsKnownValuesOnceASecond) {
     Announcer announcer(7, 191);
     auto state = predicted_state();
-    EXPECT_THAT(told(announcer, state, 0.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 15", "fw_resv 100"));
-    EXPECT_THAT(told(announcer, state, 0.9), IsEmpty());
+    EXPECT_THAT(announced(announcer, state, 0.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 15", "fw_resv 100"));
+    EXPECT_THAT(announced(announcer, state, 0.9), IsEmpty());
     state.turn_home->latest_in_s.reset();
     state.battery->time_to_reserve_s.reset();
-    EXPECT_THAT(told(announcer, state, 1.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 0")) << "too late: now";
-    EXPECT_THAT(told(announcer, LiveState{}, 2.0), ElementsAre("HEARTBEAT")) << "nothing is known";
+    EXPECT_THAT(announced(announcer, state, 1.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 0"))
+        << "too late: now";
+    EXPECT_THAT(announced(announcer, LiveState{}, 2.0), ElementsAre("HEARTBEAT")) << "nothing is known";
     state.landed = true;
-    EXPECT_THAT(told(announcer, state, 3.0), ElementsAre("HEARTBEAT"));
+    EXPECT_THAT(announced(announcer, state, 3.0), ElementsAre("HEARTBEAT"));
 }
 
-TEST(Announcer, TellsEachChangeOfAnAlarmsGrade) {
+TEST(Announcer, SendsEachChangeOfAnAlarmsGrade) {
     Announcer announcer(7, 191);
     LiveState state;
-    told(announcer, state, 0.0);
+    announced(announcer, state, 0.0);
     state.alarms = {{"reserve", "caution", "", "turn home within 4 min, or the reserve will be missed at landing"}};
-    EXPECT_THAT(told(announcer, state, 0.1), ElementsAre("4 FlightWatt caution: turn home within 4 min, or the"));
-    EXPECT_THAT(told(announcer, state, 0.2), IsEmpty()) << "it did not change";
+    EXPECT_THAT(announced(announcer, state, 0.1), ElementsAre("4 FlightWatt caution: turn home within 4 min, or the"));
+    EXPECT_THAT(announced(announcer, state, 0.2), IsEmpty()) << "it did not change";
     state.alarms[0].grade = "alarm";
-    EXPECT_THAT(told(announcer, state, 0.3), ElementsAre("2 FlightWatt alarm: turn home within 4 min, or the"));
+    EXPECT_THAT(announced(announcer, state, 0.3), ElementsAre("2 FlightWatt alarm: turn home within 4 min, or the"));
     state.alarms[0].grade = "caution";
-    EXPECT_THAT(told(announcer, state, 0.4), IsEmpty()) << "one that falls again at once is not told";
+    EXPECT_THAT(announced(announcer, state, 0.4), IsEmpty()) << "one that falls again at once is not announced";
     state.alarms.clear();
-    EXPECT_THAT(told(announcer, state, 6.0), ElementsAre("HEARTBEAT", "5 FlightWatt: no reserve alarm any more"));
-    EXPECT_THAT(told(announcer, state, 6.5), IsEmpty());
+    EXPECT_THAT(announced(announcer, state, 6.0), ElementsAre("HEARTBEAT", "5 FlightWatt: no reserve alarm any more"));
+    EXPECT_THAT(announced(announcer, state, 6.5), IsEmpty());
 }
 
 }  // namespace
