@@ -29,4 +29,4 @@ set(CMAKE_C_FLAGS_INIT "-w -include posix_missing.h ${c_headers} ${emulated}")
 set(CMAKE_CXX_FLAGS_INIT "-w -Wno-enum-constexpr-conversion -fwasm-exceptions -fexperimental-library \
 -D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION -include posix_missing.h ${cxx_headers} ${c_headers} ${emulated}")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostdlib++ -fuse-ld=lld -L${wasm_sysroot}/lib -Wl,-z,stack-size=8388608 -Wl,--gc-sections -Wl,--strip-all")
-set(CMAKE_CXX_STANDARD_LIBRARIES "-lruntime -lwasi-emulated-signal -lwasi-emulated-mman -lwasi-emulated-getpid -lwasi-emulated-process-clocks")
+set(CMAKE_CXX_STANDARD_LIBRARIES "-lz -lruntime -lwasi-emulated-signal -lwasi-emulated-mman -lwasi-emulated-getpid -lwasi-emulated-process-clocks")

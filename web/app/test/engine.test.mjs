@@ -95,10 +95,10 @@ test("a log that cannot be read is an error of the log", { skip: missing }, asyn
 test("runs share the tree: a log's series is segmented as the log", { skip: missing }, async () => {
   const root = new Folder();
   for (const name of ["opterra_synthetic_01.data", "opterra_synthetic_01.log"]) put(root, name, new StoredFile(readFileSync(project(`logs/${name}`))));
-  const parsed = await runProgram(module, ["parse", "opterra_synthetic_01.data", "-o", "out/series.csv"], root);
+  const parsed = await runProgram(module, ["parse", "opterra_synthetic_01.data", "-o", "series.csv"], root);
   assert.equal(parsed.code, 0, parsed.err);
-  assert.ok(files(root).get("/out/series.csv").isChanged);
-  const result = await runProgram(module, ["segment", "out/series.csv", "--json"], root);
+  assert.ok(files(root).get("/series.csv").isChanged);
+  const result = await runProgram(module, ["segment", "series.csv", "--json"], root);
   assert.equal(result.code, 0, result.err);
   assert.equal(JSON.parse(result.out).sorties?.length ?? 1, 1);
 });
