@@ -13,7 +13,7 @@ import { giveNativeEngine } from "./native_engine.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const logs = path.resolve(here, "../../../logs");
-const program = process.env.FLIGHTWATT;
+const program = process.env.FLIGHTWATT && path.resolve(process.env.FLIGHTWATT);
 const page_file = process.env.FLIGHTWATT_PAGE;
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const skip = (program || page_file) && existsSync(executablePath)
