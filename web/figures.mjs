@@ -102,12 +102,8 @@ function openCircuitFigure({ open_circuit: { soc_percent, voltage_v, low_v, high
 /** A component's panel, with lines and intervals where the profile has them. */
 function profilePanel({ name, parameter, lines }, panel) {
   const nodes = panel.layer[0];
-  nodes.encoding.tooltip.splice(3);
   if (!hasNumber(lines[0].low_w)) nodes.layer.splice(1, 1);
-  if (lines[0].name === "") {
-    nodes.encoding.tooltip.splice(2);
-    delete nodes.encoding.color;
-  }
+  if (lines[0].name === "") delete nodes.encoding.color;
   const ofLines = lines.map(({ name: line, value: qos, power_w, low_w, high_w }) => ({ line, qos, power_w, low_w, high_w }));
   return filled(panel, { nodes: table(...ofLines), parameter: parameter || "no parameter", component: name });
 }

@@ -19,13 +19,6 @@ const wide = /[\dA-Zmw%+−]/g;
 vega.textMetrics.width = ({ fontSize = 11, limit }, text) => Math.min(limit ? 1.1 * limit : Infinity, fontSize * (letter * String(text ?? "").length + 0.1 * (String(text ?? "").match(wide)?.length ?? 0)));
 const typed = letter * (32 / 3); // of a letter in papers [px]
 
-/** Without the transparent points of tooltips, which only enlarge the file. */
-function still(part) {
-  if (Array.isArray(part)) return part.map(still);
-  if (part === null || typeof part !== "object") return part;
-  return Object.fromEntries(Object.entries(part).filter(([key, value]) => !(key === "point" && value?.opacity === 0)).map(([key, value]) => [key, still(value)]));
-}
-
 const inside = (part, change) => (Array.isArray(part) ? part.map(change) : part !== null && typeof part === "object" ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, change(value)])) : part);
 
 /**
@@ -131,7 +124,7 @@ function flattened(part, factor) {
 
 const logger = vega.logger(vega.Error); // warnings are about legends of layers and about missing pointers
 async function viewOf(spec) {
-  return new vega.View(vega.parse(vegaLite.compile(still(spec), { logger }).spec), { renderer: "none", logger }).runAsync();
+  return new vega.View(vega.parse(vegaLite.compile(spec, { logger }).spec), { renderer: "none", logger }).runAsync();
 }
 
 /** The specification with times of more than two minutes in minutes. */
