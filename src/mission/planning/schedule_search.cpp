@@ -82,7 +82,8 @@ void keep_best(SearchPass& pass, std::vector<State>& states) {
 
 /// Removes the states that need not be followed, and appends the last runs of the others to the trail.
 void prune(SearchPass& pass, std::size_t slot, std::vector<State>& states) {
-    std::ranges::sort(states, [](const State& a, const State& b) {
+    // Stable: the order of equal states, and with it the schedule, is that of every standard library.
+    std::ranges::stable_sort(states, [](const State& a, const State& b) {
         return a.adjusted_percent != b.adjusted_percent ? a.adjusted_percent > b.adjusted_percent
                                                         : a.utility > b.utility;
     });
