@@ -72,10 +72,10 @@ async function exercise(logs, largeMb) {
   await engine.write("logs/a b/ü.data", new File([bytesOf(logs[0][1])], "x.data"));
   await engine.write("/logs/a b/ü.log", bytesOf(logs[1][1]));
   const lines = [];
-  found.segment = await timed("segment", () => engine.run(["segment", "logs/a b/ü.data", "--json", "-o", "out/p.txt"], (line) => lines.push(line)));
+  found.segment = await timed("segment", () => engine.run(["segment", "logs/a b/ü.data", "--json", "-o", "p.txt"], (line) => lines.push(line)));
   found.lines = lines;
   found.list = await engine.list();
-  found.written = new TextDecoder().decode(await engine.read("/out/p.txt"));
+  found.written = new TextDecoder().decode(await engine.read("/p.txt"));
   found.missing = await engine.read("/not").then(() => "read", (error) => error.message);
   const waiting = engine.run(["batch", "logs", "-o", "out/batch"]);
   const next = engine.run(["--version"]);
@@ -116,13 +116,13 @@ for (const [name, address] of [["from a file", pathToFileURL(path.join(folder, "
     assert.match(found.version.out, /^flightwatt \d/);
     assert.equal(found.segment.code, 0, found.segment.err);
     assert.ok(found.segment.err.includes(found.lines[0] ?? ""));
-    assert.deepEqual(found.list.map((file) => file.path), ["/logs/a b/ü.data", "/logs/a b/ü.log", "/out/p.txt"]);
+    assert.deepEqual(found.list.map((file) => file.path), ["/logs/a b/ü.data", "/logs/a b/ü.log", "/p.txt"]);
     assert.ok(found.written.length > 0);
     assert.match(found.missing, /no file/);
     assert.deepEqual(found.cancelled, [true, true]);
     assert.deepEqual(found.listAfter, found.list);
     assert.equal(found.afterCancel.out, found.segment.out);
-    assert.deepEqual(found.listAtEnd.map((file) => file.path), ["/out/p.txt"]);
+    assert.deepEqual(found.listAtEnd.map((file) => file.path), ["/p.txt"]);
     assert.equal(found.removed.code, 3);
     if (found.large) assert.equal(found.large.code, 0, found.large.err);
     const times = Object.entries(found.milliseconds).map(([what, ms]) => `${what} ${ms} ms`).join(", ");
