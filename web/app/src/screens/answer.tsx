@@ -1,6 +1,7 @@
 // How long and how far, with sliders for what is asked; all numbers are of `flightwatt answer` and `simulate`.
 import { useEffect, useMemo, useState } from "preact/hooks";
 import uPlot from "uplot";
+import { Dots } from "../sections/answer";
 import { Card, Command, Figure, Mark, Verdict, type Grade } from "../ui/basics";
 import { distance, duration, number, quantity } from "../ui/format";
 import { Plot, type Line } from "../ui/plot";
@@ -26,17 +27,6 @@ export function changeOf(
   return /[1-9]/.test(text) ? `${text} ${now < before ? "less" : "more"}` : "no change";
 }
 
-/// Twenty dots for 100 flights.
-function Dots({ known }: { known: number }) {
-  return (
-    <span class="dots" aria-hidden="true">
-      {Array.from({ length: 20 }, (_, i) => (
-        <i class={i < known ? "full" : ""} />
-      ))}
-    </span>
-  );
-}
-
 function Change({ text }: { text: string }) {
   return text ? <span class={`change${/less/.test(text) ? " less" : ""}`}> · {text}</span> : null;
 }
@@ -53,7 +43,7 @@ function Figures({ now, measured, asking }: { now: Answered; measured?: Answered
         label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`}
         value={duration(time.value)}
       >
-        {is_chance && <Dots known={19} />}
+        {is_chance && <Dots of_100={95} />}
         <p class="figure-note">
           {is_chance
             ? <b class="ok">in 95 of 100 flights</b>

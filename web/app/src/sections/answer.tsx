@@ -15,7 +15,7 @@ export function answerSentence(answer: AnswerDocument): string {
 }
 
 /// Twenty dots are 100 flights.
-function Dots({ of_100 }: { of_100: number }) {
+export function Dots({ of_100 }: { of_100: number }) {
   return (
     <svg class="dots tone-ok" viewBox="0 0 240 10" width="240" height="10" aria-hidden="true">
       {Array.from({ length: 20 }, (_, i) => <circle class={5 * i + 2.5 < of_100 ? "full" : "ring"} cx={6 + 11.8 * i} cy="5" r="3.6" />)}
