@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // The program as WebAssembly against the native one, over the same files: what they print, write and return.
 //   equality_test.mjs [--native BIN] [--module FILE] [--times] [PART...]
-// Parts: logs, series, fits, missions, answers; all by default. Prints a line a case on the standard error, and a table at
+// Parts: logs, series, fits, missions, answers, sliders; all by default. Prints a line a case on the standard error, and a table at
 // the end. Exit codes: 0 equal, 1 not, 77 where the module or the native program is not built. See docs/browser.md.
 import { spawnSync } from "node:child_process";
 import fs from "node:fs";
@@ -12,7 +12,7 @@ import { bundled } from "../../web/bundled.mjs";
 
 const project = fileURLToPath(new URL("../../", import.meta.url)).replace(/\/$/, "");
 const shared = path.resolve(project, "../shared");
-const partNames = ["logs", "series", "fits", "missions", "answers"];
+const partNames = ["logs", "series", "fits", "missions", "answers", "sliders"];
 
 const given = { native: path.join(project, "build/release/bin/flightwatt"),
                 module: path.join(project, "build/wasm/flightwatt.wasm"), times: false, parts: [] };
@@ -71,11 +71,12 @@ const rows = [];   // of the table at the end: a part's name and what was found
 const failures = [];
 
 /// Runs both programs with the same arguments and hands both results to `compare`, which returns the largest relative
-/// difference, or throws what differs. Outputs go to scratch/made on the disk and in the tree.
-async function both(row, name, args, tree, compare) {
+/// difference, or throws what differs. Outputs go to scratch/made on the disk and in the tree, which begins empty unless
+/// the case keeps the files of the one before it.
+async function both(row, name, args, tree, compare, { keepsFiles = false } = {}) {
   const made = path.join(scratch, "made");
-  fs.rmSync(made, { recursive: true, force: true });
-  fs.mkdirSync(made);
+  if (!keepsFiles) fs.rmSync(made, { recursive: true, force: true });
+  fs.mkdirSync(made, { recursive: true });
   const environment = { FLIGHTWATT_WEB: path.join(project, "web"), SOURCE_DATE_EPOCH: "0" };
   let start = performance.now();
   const run = spawnSync(given.native, args, { cwd: made, encoding: "utf8", maxBuffer: 1 << 30, env: { ...process.env, ...environment } });
@@ -224,7 +225,35 @@ const parts = {
       await both(row, name, [...logs, "--capacity", "5", "--json"], tree, printed(1e-6));
     }
   },
+  /// A page's sliders are options of answer, whose mission simulate flies: 100 settings, the same in each run.
+  async sliders() {
+    const row = newRow("answer and simulate, 100 settings", 1e-6);
+    const logs = own.filter((name) => /_0[1-3]\.data$/.test(name));
+    const out = path.join(scratch, "made/answer");
+    const ranges = [["--reserve", 0, 50], ["--payload", 0, 1], ["--wind", 0, 12], ["--airspeed", 9, 18], ["--temperature", -20, 45]];
+    const random = randomNumbers(20261129);
+    const between = (low, high) => (low + (high - low) * random()).toFixed(2);
+    for (let i = 0; i < 100; ++i) {
+      const options = ranges.filter(() => random() < 0.4).flatMap(([option, low, high]) => [option, between(low, high)]);
+      const question = ["--capacity", between(1, 8), ...options];
+      const tree = treeOf(path.join(project, "logs"));
+      const answer = ["answer", ...logs, "-o", out, "--no-page", "--json", "--quiet", ...question];
+      await both(row, question.join(" "), answer, tree, printed(1e-6));
+      const simulate = ["simulate", path.join(out, "answer-mission.toml"), "--samples", "400", "--json"];
+      await both(row, `simulate ${question.join(" ")}`, simulate, tree, printed(1e-6), { keepsFiles: true });
+    }
+  },
 };
+
+/// Mulberry32: numbers from 0 to 1.
+function randomNumbers(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let mixed = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    mixed = (mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed)) ^ mixed;
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 4294967296;
+  };
+}
 
 for (const part of given.parts) await parts[part]();
 
