@@ -33,6 +33,7 @@ struct ReportArguments {
     std::optional<std::string> outline;
     std::optional<double> capacity_ah;
     bool with_replay = false;
+    bool is_interactive = false;
 };
 
 report::FigureLayout figure_layout(const ReportArguments& arguments) {
@@ -49,6 +50,7 @@ report::ReportInput read_inputs(const cli::StageCall& call, const ReportArgument
     figure_layout(arguments);  // a bad one is refused before any work
     inputs.published_file = arguments.published;
     inputs.with_replay = arguments.with_replay;
+    inputs.is_interactive = arguments.is_interactive;
     if (arguments.outline) inputs.outlines = report::read_outlines(*arguments.outline);
     cli::MissionNames names;
     for (const auto& input : call.inputs) {
@@ -99,6 +101,7 @@ std::string command_of(const cli::StageCall& call, const ReportArguments& argume
     if (arguments.published) command += " --published " + name_of(*arguments.published);
     if (arguments.outline) command += " --outline " + name_of(*arguments.outline);
     if (arguments.with_replay) command += " --replay";
+    if (arguments.is_interactive) command += " --interactive";
     return valid_utf8(command + " -o " + name_of(call.output.value_or("report.html")));
 }
 
@@ -126,6 +129,11 @@ int write_page(const cli::StageCall& call, const ReportArguments& arguments) {
         throw UsageError("a page is not for a terminal: expected -o FILE.html");
     std::optional<report::FrontEnd> front_end;  // read first: missing files are an error before any work
     if (wants_page) front_end = report::read_front_end(report::web_folder());
+    if (input.is_interactive) {
+        if (!front_end || input.missions.empty())
+            throw UsageError("--interactive is for the missions of a page: give missions and -o FILE.html");
+        front_end->engine = report::read_engine(report::web_folder());
+    }
     if (arguments.figures) report::figure_tools(report::web_folder());
     input.with_figures = arguments.figures.has_value();
     input.command = command_of(call, arguments);
@@ -173,5 +181,7 @@ the batch's own, with the bands that the batch stored.)"};
         "flights, or else the estimate of flightwatt battery");
     options.add("replay", arguments.with_replay,
                 "fly the missions' schedules on the power that the batch's flights measured (flightwatt replay)");
+    options.add("interactive", arguments.is_interactive,
+                "put the program and the missions' files into the page (4 MB): sliders fly a mission again");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_page(call, arguments); });
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "report/document/columns.h"
 #include "report/document/plain_answers.h"
 
 #include <boost/algorithm/string/replace.hpp>
@@ -41,8 +42,23 @@ FrontEnd read_front_end(const std::filesystem::path& folder) {
     return {read_file(folder / "app.css"), read_file(folder / "app.js")};
 }
 
+std::string read_engine(const std::filesystem::path& folder) {
+    const auto file = folder / "flightwatt.wasm.gz";
+    if (open_error(file))
+        throw InputError({file.string()}, "the program for the page is missing",
+                         "run scripts/build_wasm, or leave out --interactive");
+    return read_file(file);
+}
+
 std::string page_html(const Json& document, const FrontEnd& front_end) {
+    const bool has_engine = !front_end.engine.empty();
+    const auto engine =
+        !has_engine ? ""
+                    : "<script type=\"text/plain\" id=\"flightwatt-wasm\">" + base64(front_end.engine) + "</script>\n";
     return filled_page("page", {{"version", FLIGHTWATT_VERSION},
+                                {"engine-scripts", has_engine ? " 'wasm-unsafe-eval'" : ""},
+                                {"engine-workers", has_engine ? "; worker-src blob:" : ""},
+                                {"engine", engine},
                                 {"title", html_escaped(document.at("title").get<std::string>())},
                                 {"style", front_end.style},
                                 {"answers", plain_answers(document)},

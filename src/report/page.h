@@ -20,13 +20,17 @@ const std::map<std::string_view, std::string_view>& web_pages();
 struct FrontEnd {
     std::string style;
     std::string script;
+    std::string engine = {};  ///< the program as WebAssembly, compressed by gzip; empty: the page does not run it
 };
 
 /// Reads app.css and app.js. Throws InputError for a missing one, with how to make them.
 FrontEnd read_front_end(const std::filesystem::path& folder);
 
+/// Reads flightwatt.wasm.gz, the program for browsers. Throws InputError where it is missing, with how to make it.
+std::string read_engine(const std::filesystem::path& folder);
+
 /// Returns a self-contained HTML file with the front end and a document (web/app/src/documents.ts), which is also there
-/// as plain HTML; its content security policy forbids all requests.
+/// as plain HTML; its content security policy forbids all requests, and permits WebAssembly only with the engine.
 std::string page_html(const Json& document, const FrontEnd& front_end);
 
 /// Returns JSON without '<', for an HTML script element.

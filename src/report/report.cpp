@@ -16,6 +16,7 @@
 #include "report/document/battery_document.h"
 #include "report/document/findings.h"
 #include "report/document/flights_document.h"
+#include "report/document/mission_sliders.h"
 #include "report/document/missions_document.h"
 #include "report/document/model_document.h"
 #include "report/flight_trends.h"
@@ -56,7 +57,7 @@ Json empty_document() {
     document["program"] = "flightwatt " FLIGHTWATT_VERSION;
     for (const auto* key : {"title", "name", "command", "headline"}) document[key] = "";
     for (const auto* key : {"facts", "aircraft", "missions", "quality", "software", "packs", "flights", "exclusions",
-                            "outlines", "models", "warnings", "notes"})
+                            "outlines", "models", "warnings", "notes", "files"})
         document[key] = Json::array();
     for (const auto* key : {"answer", "panel", "schedules", "physical", "validation", "battery", "trends", "replay"})
         document[key] = nullptr;
@@ -194,6 +195,7 @@ void add_missions(Draft& page) {
     document["software"] = software_json(flown);
     document["schedules"] = schedule_notes(flown);
     document["missions"] = missions_json(page.findings, latex);
+    if (page.input.is_interactive) add_sliders(flown, document);
 }
 
 /// The missions on the power that the batch's flights measured.

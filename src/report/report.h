@@ -40,6 +40,7 @@ struct ReportInput {
     std::optional<double> capacity_ah = {};          ///< capacity of the flights' battery
     bool with_replay = false;                        ///< with the missions replayed on the flights
     std::vector<Outline> outlines = {};              ///< drawn below the flown tracks
+    bool is_interactive = false;                     ///< the page runs the program: with the missions' files
     bool with_figures = false;                       ///< the document is also for write_figures()
     Json answer = nullptr;                           ///< of flightwatt LOG... (AnswerDocument)
     std::string command = {};                        ///< that makes the page

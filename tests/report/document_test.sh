@@ -16,8 +16,11 @@ mkdir -p "$scratch"
 quiet() { "$@" >"$scratch/stdout" 2>"$scratch/stderr" || { cat "$scratch/stderr" >&2 && exit 1; }; }
 
 quiet "$bin/flightwatt-batch" "$source/logs" -o "$scratch/six"
-quiet "$bin/flightwatt-report" "$scratch/six" "$source"/missions/paper/{phased,plan}.toml \
-    "$source"/missions/synthetic/{survey-path,several-packs}.toml -o "$scratch/report.html"
+mkdir "$scratch/web"
+cp "$bin/../share/flightwatt/web"/app.{js,css} "$scratch/web"
+echo "no module" >"$scratch/web/flightwatt.wasm.gz"
+FLIGHTWATT_WEB=$scratch/web quiet "$bin/flightwatt-report" "$scratch/six" "$source"/missions/paper/{phased,plan}.toml \
+    "$source"/missions/synthetic/{survey-path,several-packs}.toml --interactive -o "$scratch/report.html"
 quiet "$bin/flightwatt" "$source/logs" --capacity 3.2 -o "$scratch/answer"
 mv "$scratch/answer/answer.html" "$scratch/answer.html"
 

@@ -43,6 +43,22 @@ TEST(PageHtml, KeepsScriptsInTheirElementsAndOffTheNetwork) {
     EXPECT_THAT(html, Not(HasSubstr("https://")));
 }
 
+TEST(PageHtml, MayRunTheProgramThatItHasInside) {
+    const auto html = page_html(small_document(), {"", "", "module"});
+    EXPECT_THAT(html, HasSubstr("script-src 'unsafe-inline' 'wasm-unsafe-eval'; "));
+    EXPECT_THAT(html, HasSubstr("; worker-src blob:\""));
+    EXPECT_THAT(html, HasSubstr("<script type=\"text/plain\" id=\"flightwatt-wasm\">bW9kdWxl</script>"));
+    for (const auto* word : {"wasm", "worker-src"}) EXPECT_THAT(small_page(), Not(HasSubstr(word)));
+}
+
+TEST(ReadEngine, NeedsTheModuleAndNamesTheScriptThatMakesIt) {
+    const auto folder = test::scratch_dir();
+    EXPECT_THAT(test::rejected([&] { read_engine(folder); }),
+                testing::AllOf(HasSubstr("flightwatt.wasm.gz"), HasSubstr("scripts/build_wasm")));
+    write_file_atomically(folder / "flightwatt.wasm.gz", "module");
+    EXPECT_EQ(read_engine(folder), "module");
+}
+
 TEST(ScriptJson, CannotEndItsElement) {
     const Json json{{"name", "</script><!--<script>"}};
     const auto text = script_json(json);

@@ -78,10 +78,11 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
     return kept;
 }
 
-std::string deflated_base64(std::string_view text) {
+std::string deflated_base64(std::string_view text) { return base64(deflated(text)); }
+
+std::string base64(const std::string& bytes) {
     using namespace boost::archive::iterators;
     using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-    const auto bytes = deflated(text);
     std::string base64(Digits(bytes.begin()), Digits(bytes.end()));
     constexpr std::size_t digits_of_three_bytes = 4;
     while (base64.size() % digits_of_three_bytes != 0) base64 += '=';

@@ -39,4 +39,7 @@ std::vector<Value> evenly_chosen(const std::vector<Value>& values, std::size_t c
 /// decodes.
 std::string deflated_base64(std::string_view text);
 
+/// Returns bytes in base64 (RFC 4648).
+std::string base64(const std::string& bytes);
+
 }  // namespace flightwatt::report

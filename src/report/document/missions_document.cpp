@@ -283,6 +283,7 @@ Json missions_json(const Findings& findings, LatexTables& tables) {
         json["phases"] = phases_of(simulated.mission.setup);
         json["schedule"] = schedule_json(simulated);
         json["path"] = path_json(simulated);
+        json["again"] = nullptr;
         all.push_back(std::move(json));
     }
     return all;

@@ -2,6 +2,7 @@
 
 #include "battery/battery_toml.h"
 #include "compute/compute_model.h"
+#include "mission/plan.h"
 #include "mission/prepared_mission.h"
 #include "mission/sampled_flights.h"
 #include "report/document/columns.h"

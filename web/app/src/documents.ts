@@ -62,6 +62,8 @@ export interface ReportDocument {
   warnings: string[];
   /// Contents that are absent, with reasons.
   notes: string[];
+  /// With --interactive, what the missions name, at places that fit together.
+  files: { path: string; text: string }[];
 }
 
 // ---- answer (docs/reference/answer.md)
@@ -272,6 +274,29 @@ export interface MissionDocument {
   schedule: { start_s: number; end_s: number; compute_w: number; phase: PhaseName; runs: string }[];
   /// The path of the cruise, where the mission states one; east and north of its start.
   path: MissionPath | null;
+  /// With --interactive; null also for a mission over several packs.
+  again: MissionAgain | null;
+}
+
+/// How a mission is flown again with other numbers.
+export interface MissionAgain {
+  /// Its place among the files.
+  file: string;
+  /// It has no schedule: `plan` makes one.
+  is_planned: boolean;
+  sliders: MissionSlider[];
+}
+
+/// A number of a mission file that the reader may change.
+export interface MissionSlider {
+  /// "wind.speed_m_per_s".
+  key: string;
+  /// As the mission is flown now.
+  value: number;
+  low: number;
+  high: number;
+  /// Where its key is in the file (columns count characters, from 1); empty: the file does not state it.
+  places: { line: number; column: number }[];
 }
 
 export interface MissionPath {

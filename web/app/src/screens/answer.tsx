@@ -75,8 +75,10 @@ const phase_words: Record<string, string> = { takeoff: "take-off", cruise: "crui
 
 const minutes = (seconds: number[]) => seconds.map((value) => value / 60);
 
+type OldCurve = Pick<Curve, "time_s" | "soc">;
+
 /// Returns the lines of charge over a flight, the old ones dotted, on one axis of minutes.
-function chargeLines(curve: Curve, old: Curve | null): { x: number[]; lines: Line[] } {
+function chargeLines(curve: Curve, old: OldCurve | null, old_name: string): { x: number[]; lines: Line[] } {
   const tables: uPlot.AlignedData[] = [[minutes(curve.time_s), curve.soc]];
   if (curve.band) tables.push([minutes(curve.band.time_s), curve.band.low, curve.band.high]);
   if (old) tables.push([minutes(old.time_s), old.soc]);
@@ -87,14 +89,21 @@ function chargeLines(curve: Curve, old: Curve | null): { x: number[]; lines: Lin
     lines.push({ name: "90 of 100 flights", colour: "ink", band: columns[at], y: columns[at + 1] ?? [] });
     at += 2;
   }
-  if (old) lines.push({ name: "as measured", colour: "ink3", y: columns[at] ?? [], dashed: true });
+  if (old) lines.push({ name: old_name, colour: "ink3", y: columns[at] ?? [], dashed: true });
   lines.push({ name: "charge", colour: "ink", y: columns[0] ?? [] });
   lines.push({ name: "reserve", colour: "alarm", y: x.map(() => curve.simulation.reserve_soc_percent), dashed: true });
   return { x, lines };
 }
 
-export function ChargePlot({ curve, old, name }: { curve: Curve; old: Curve | null; name: string }) {
-  const { x, lines } = useMemo(() => chargeLines(curve, old), [curve, old]);
+interface ChargePlotProps {
+  curve: Curve;
+  old: OldCurve | null;
+  old_name?: string;
+  name: string;
+}
+
+export function ChargePlot({ curve, old, old_name = "as measured", name }: ChargePlotProps) {
+  const { x, lines } = useMemo(() => chargeLines(curve, old, old_name), [curve, old]);
   const stripes = useMemo(
     () => curve.phases.map((phase) => ({
       from: phase.from / 60,

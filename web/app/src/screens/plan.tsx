@@ -9,6 +9,7 @@ import { Slider } from "../ui/slider";
 import { track } from "../work/csv";
 import type { PlanBlock, Simulation } from "../work/documents";
 import { blocksOf, flyPlan, planCommand, type FlownPlan, type PlanOptions } from "../work/flown_plan";
+import { useLatest } from "../work/latest";
 import { areaFile, shapeOf, type PlanShape } from "../work/plan_shapes";
 import { errorsOf, type Aircraft, type Answered, type Curve, type Project, type State } from "../work/project";
 import { ChargePlot, NoLogs } from "./answer";
@@ -195,41 +196,6 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
     };
   }, [flown]);
   return help;
-}
-
-/// Flies the latest options; while a flight is under way the last ones alone are next.
-function useFlown(
-  project: Project,
-  aircraft: Aircraft | undefined,
-  answered: Answered | undefined,
-  options: PlanOptions | null,
-) {
-  const [flown, setFlown] = useState<FlownPlan | null>(null);
-  const [failed, setFailed] = useState("");
-  const wanted = useRef<PlanOptions | null>(null);
-  const busy = useRef(false);
-  const [asking, setAsking] = useState(false);
-  useEffect(() => {
-    wanted.current = options;
-    if (!options || !aircraft || !answered || busy.current) return;
-    busy.current = true;
-    setAsking(true);
-    void (async () => {
-      while (wanted.current) {
-        const latest = wanted.current;
-        wanted.current = null;
-        const found = await flyPlan(project, aircraft, answered, latest).catch((error) => String(error));
-        if (typeof found === "string") setFailed(found);
-        else {
-          setFailed("");
-          setFlown(found);
-        }
-      }
-      busy.current = false;
-      setAsking(false);
-    })();
-  }, [options, answered]);
-  return { flown, failed, asking };
 }
 
 function useShape(project: Project, plan: string): PlanShape {
@@ -459,7 +425,11 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
   const { options, setOptions, blocks, open } = usePlanOptions(project, state);
   const [drawing, setDrawing] = useState<Place[] | null>(null);
   const answered = aircraft?.now;
-  const { flown, failed, asking } = useFlown(project, aircraft, answered, options);
+  const { found: flown, failed, asking } = useLatest(
+    options,
+    async (latest) => (aircraft && answered ? flyPlan(project, aircraft, answered, latest) : ""),
+    [options, answered],
+  );
   const places = useFlownPlaces(project, aircraft);
   const shape = useShape(project, options?.plan ?? "");
   const onPlace = useCallback((place: Place) => setDrawing((before) => [...(before ?? []), place]), []);

@@ -17,6 +17,7 @@ import { SeveralPacks } from "../sections/several_packs";
 import { Strips, withSoftware } from "../sections/software";
 import { Command } from "../ui/basics";
 import { Shell } from "../ui/shell";
+import { MissionWhatIf } from "./mission_what_if";
 
 interface Part {
   id: string;
@@ -56,7 +57,9 @@ function Missions({ of, selection }: PartProps) {
   return (
     <div class="grid">
       <div class={shown ? "three-quarters" : ""}>
-        <MissionCard mission={mission} index={selection.mission} count={missions.length} />
+        <MissionCard mission={mission} index={selection.mission} count={missions.length}>
+          {mission.again && <MissionWhatIf key={selection.mission} mission={mission} of={mission.again} files={of.files} />}
+        </MissionCard>
         {missions.length > 1 && <MissionTable missions={missions} selected={selection.mission} onSelect={selection.selectMission} />}
       </div>
       {shown && <div class="quarter">{shown}</div>}

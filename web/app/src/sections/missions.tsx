@@ -1,4 +1,5 @@
 // The missions, worst first: the selected one as a card with its curve, all of them as a table.
+import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
 import type { MissionDocument } from "../documents";
 import { Mark, Verdict } from "../ui/basics";
@@ -7,7 +8,15 @@ import { ChargeChart, chargeFlight, nearest, Sparkline, toneOf } from "./charge_
 import { MissionMap } from "./mission_map";
 import { capital, countWord, grades } from "./words";
 
-export function MissionCard({ mission, index, count, heading = "h2" }: { mission: MissionDocument; index: number; count: number; heading?: "h1" | "h2" }) {
+interface MissionCardProps {
+  mission: MissionDocument;
+  index: number;
+  count: number;
+  heading?: "h1" | "h2";
+  children?: ComponentChildren;
+}
+
+export function MissionCard({ mission, index, count, heading = "h2", children }: MissionCardProps) {
   const [time_s, setTime] = useState<number | null>(null);
   const { card, path } = mission;
   const grade = grades[mission.outcome];
@@ -48,6 +57,7 @@ export function MissionCard({ mission, index, count, heading = "h2" }: { mission
         </div>
       )}
       {path && <MissionMap mission={mission} path={path} at={time_s == null ? null : nearest(path.time_s, time_s)} />}
+      {children}
     </article>
   );
 }

@@ -421,17 +421,18 @@ export class Project {
     return typeof found === "string" ? null : found;
   }
 
-  async curveOrError(mission: string): Promise<Curve | string> {
+  /// The same, or why there is none; without samples no flights are drawn.
+  async curveOrError(mission: string, samples = 400): Promise<Curve | string> {
     const [csv, band] = ["curve.csv", "band.csv"];
-    const result = await this.engine.run(
-      ["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv, "--samples", "400", "--samples-csv", band]);
-    const final = result.out
-      ? result
-      : await this.engine.run(["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv]);
+    const simulate = ["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv];
+    const drawn = samples > 0
+      ? await this.engine.run([...simulate, "--samples", String(samples), "--samples-csv", band])
+      : null;
+    const final = drawn?.out ? drawn : await this.engine.run(simulate);
     if (!final.out) return errorsOf(final);
     const simulation = JSON.parse(final.out) as Simulation;
     const curve = curveOf(parseCsv(await this.text(csv)), simulation);
-    if (result.out && simulation.probability_below_reserve != null) {
+    if (drawn?.out && simulation.probability_below_reserve != null) {
       const table = parseCsv(await this.text(band));
       curve.band = {
         time_s: numbers(table, "time_s").map((value) => value ?? 0),

@@ -4,6 +4,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { workerText } from "../../../worker_text.mjs";
 
 const source = fileURLToPath(new URL("../../src/", import.meta.url));
 
@@ -24,7 +25,7 @@ export async function bundled(...modules) {
     await build({
       stdin: { contents: [...modules.map((name) => `export * from "./${name}";`), 'export { h, options, Fragment } from "preact";'].join("\n"), resolveDir: source, loader: "ts" },
       bundle: true, format: "esm", platform: "neutral", mainFields: ["module", "main"], outfile: file, jsx: "automatic", jsxImportSource: "preact",
-      plugins: [withoutDrawing],
+      plugins: [withoutDrawing, workerText],
       loader: { ".css": "empty" }, logLevel: "error",
     });
     return await import(pathToFileURL(file).href);

@@ -1,0 +1,34 @@
+// Work of which the latest request alone counts, as that of a slider.
+import { useEffect, useRef, useState } from "preact/hooks";
+
+/// Does the latest of what is asked whenever one of `inputs` changes; while it is under way, what is asked last alone is
+/// next. The work returns what it found, or why it found nothing.
+export function useLatest<Asked, Found extends object>(
+  asked: Asked | null | undefined,
+  work: (asked: Asked) => Promise<Found | string>,
+  inputs: unknown[],
+): { found: Found | null; failed: string; asking: boolean } {
+  const [found, setFound] = useState<Found | null>(null);
+  const [failed, setFailed] = useState("");
+  const [asking, setAsking] = useState(false);
+  const wanted = useRef(asked);
+  const busy = useRef(false);
+  useEffect(() => {
+    wanted.current = asked;
+    if (asked == null || busy.current) return;
+    busy.current = true;
+    setAsking(true);
+    void (async () => {
+      while (wanted.current != null) {
+        const latest = wanted.current;
+        wanted.current = null;
+        const result = await work(latest).catch((error) => String(error));
+        setFailed(typeof result === "string" ? result : "");
+        if (typeof result !== "string") setFound(result);
+      }
+      busy.current = false;
+      setAsking(false);
+    })();
+  }, inputs);
+  return { found, failed, asking };
+}
