@@ -64,7 +64,7 @@ class MixedLandings {
             simulate_next_.push_back(left_percent_.size() - 1);
     }
 
-    /// Simulates the flights near a landing, until the errors that this shows are small beside what is near.
+    /// Simulates the flights near a landing, until all are that may be as near, by the errors that this shows.
     void resolve_near(double percent) {
         simulate();
         for (double reach_percent = -1.0; reach_percent < reach_of_errors * error_percent_;) {
