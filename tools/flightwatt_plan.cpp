@@ -64,10 +64,11 @@ Fields<PlanLimit> record_fields(const PlanLimit*) {
 struct MissionFile {
     std::filesystem::path path;
     std::string text;
+    mission::MissionLoader load = mission::mission_loader(text, path);
 
     mission::MissionVariant read(mission::MissionReadOptions reading = {}) const {
         reading.allow_unplanned = true;
-        return mission::parse_mission(text, path, reading);
+        return load(reading);
     }
     mission::MissionVariant read_with_cruise(double cruise_s) const { return read({.cruise_s = cruise_s}); }
 };

@@ -105,9 +105,9 @@ Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s
 
 /// The mission of the question with a given duration of its cruise.
 mission::MissionVariation variation_of(const KnownAircraft& aircraft, const Question& question) {
-    const auto text = mission_toml(aircraft, question);
-    const auto file = aircraft.model_file.parent_path() / mission_name;
-    return [text, file](double cruise_s) { return mission::parse_mission(text, file, {.cruise_s = cruise_s}); };
+    const auto mission_of =
+        mission::mission_loader(mission_toml(aircraft, question), aircraft.model_file.parent_path() / mission_name);
+    return [mission_of](double cruise_s) { return mission_of({.cruise_s = cruise_s}); };
 }
 
 /// The mission of the flights' own cruise; its error is why power and time are unknown.

@@ -2,12 +2,19 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/fingerprint.h"
+#include "base/overwrite_guard.h"
 #include "base/toml_reader.h"
 #include "batch/manifest.h"
 #include "mechanical/fit_records.h"
 
 #include <cstddef>
+#include <exception>
+#include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mechanical {
 
@@ -30,12 +37,21 @@ Json json_of(const BatchFit& fit) {
               {"exclude", fit.excluded},
               {"keep", fit.keep},
               {"other_aircraft", fit.other_aircraft},
+              {"key", fit.key},
               {"copies", Json::array()}};
     for (const auto& copy : fit.copies)
         if (copy.has_power) json["copies"].push_back({{"flight", copy.flight}, {"of", copy.same_as}});
     for (const auto phase : flight::all_phases)
         json["bands"][std::string(to_string(phase))] = record_json(fit.bands[phase]);
     return json;
+}
+
+/// Of all that a fit consists of.
+std::string seal_of(std::string_view model, std::string_view model_errors, const Json& json) {
+    Fingerprint fingerprint;
+    for (const auto text : {model, model_errors}) fingerprint.add(text);
+    fingerprint.add(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return fingerprint.hex();
 }
 
 void read_fit_json(const Json& json, BatchFit& fit) {
@@ -45,6 +61,7 @@ void read_fit_json(const Json& json, BatchFit& fit) {
     fit.excluded = json.at("exclude").get<std::set<std::string>>();
     fit.keep = json.at("keep").get<std::set<std::string>>();
     fit.other_aircraft = json.value("other_aircraft", std::set<std::string>());  // not in 0.2
+    fit.key = json.value("key", std::string());                                  // not in 0.2
     for (const auto& copy : json.at("copies")) fit.copies.push_back({copy.at("flight"), copy.at("of")});
     for (const auto phase : flight::all_phases)
         read_record(json.at("bands").at(std::string(to_string(phase))), fit.bands[phase]);
@@ -55,21 +72,57 @@ void read_fit_json(const Json& json, BatchFit& fit) {
 BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const mechanical::ModelFitOptions& options) {
     auto fitted = fit_model(flights, options);
     const auto analyses = mechanical::analyse_model(fitted);
-    BatchFit fit{options, {}, {}, {}, {}, {}, curve_bands(fitted, analyses)};
+    BatchFit fit{options, {}, {}, {}, {}, {}, {}, curve_bands(fitted, analyses)};
     fit.model = std::move(fitted.model);
     return fit;
 }
 
+std::string fit_key(const BatchFlights& flights, const BatchFit& fit) {
+    Fingerprint fingerprint;
+    fingerprint.add(FLIGHTWATT_VERSION " fit 1");
+    fingerprint.add(fit.options.name);
+    fingerprint.add(json_of(fit).dump(-1, ' ', false, Json::error_handler_t::replace));  // options and names
+    for (const auto& [record, up_to_date, of_this_run, missing, other_aircraft, selection] : flights) {
+        if (selection.flights.empty()) continue;
+        for (const auto& text : {record.flight, record.fingerprint, record.results}) fingerprint.add(text);
+        fingerprint.add(fmt::format("{}", record.content.fingerprint));
+        for (const auto& sortie : selection.flights) {
+            fingerprint.add(sortie.flight);
+            fingerprint.add(fmt::format("{}", fmt::join(sortie.phases.values, " ")));
+        }
+    }
+    return fingerprint.hex();
+}
+
 void write_batch_fit(const BatchFit& fit, const std::filesystem::path& out) {
-    write_file_atomically(out / model_errors_name, to_toml(fit.model), out / temporary_folder);
+    const auto with_errors = to_toml(fit.model);
     auto plain = fit.model;
     for (auto& phase : plain.phases.values) {
         phase.errors.reset();
         phase.spread.reset();
     }
-    write_file_atomically(out / model_name, to_toml(plain), out / temporary_folder);
-    const auto text = json_of(fit).dump(1, ' ', false, Json::error_handler_t::replace);  // names need not be UTF-8
+    const auto model = to_toml(plain);
+    auto json = json_of(fit);
+    json["seal"] = seal_of(model, with_errors, json);
+    write_file_atomically(out / model_errors_name, with_errors, out / temporary_folder);
+    write_file_atomically(out / model_name, model, out / temporary_folder);
+    const auto text = json.dump(1, ' ', false, Json::error_handler_t::replace);  // names need not be UTF-8
     write_file_atomically(out / fit_name, text + "\n", out / temporary_folder);
+}
+
+std::optional<BatchFit> unchanged_batch_fit(const std::filesystem::path& out, const std::string& key) {
+    const OverwriteExemption own;
+    try {
+        auto json = Json::parse(read_file(out / fit_name, max_fit_bytes));
+        const auto seal = json.at("seal").get<std::string>();
+        json.erase("seal");
+        if (json.at("key") != key ||
+            seal != seal_of(read_file(out / model_name), read_file(out / model_errors_name), json))
+            return std::nullopt;
+        return read_batch_fit(out);
+    } catch (const std::exception&) {
+        return std::nullopt;  // missing, damaged or of another version
+    }
 }
 
 std::vector<std::string> remove_batch_fit(const std::filesystem::path& out) {

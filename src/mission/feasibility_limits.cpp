@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "mission/planning/planner.h"
-#include "mission/sampling/landing_distribution.h"
+#include "mission/sampling/landing_search.h"
 #include "path/path.h"
 
 #include <algorithm>
@@ -19,11 +19,6 @@
 
 namespace flightwatt::mission {
 namespace {
-
-LandingDistribution drawn_landings(const Mission& mission, double probability) {
-    require_known_spread(mission.setup);
-    return draw_landings_until_known(mission, collect_uncertainty(mission.setup), probability);
-}
 
 /// Simulated final state of charge minus the reserve [points]. Negative if the reserve is not kept, the more so the
 /// earlier the battery ends.
@@ -40,32 +35,26 @@ class LimitSearch {
     /// `misfit_percent` is the surplus of values that do not fit the schedule: they are too small, or too great.
     LimitSearch(const MissionVariation& variation, const std::optional<double>& probability,
                 double misfit_percent = 100.0)
-        : variation_(variation), probability_(probability), misfit_percent_(misfit_percent) {}
+        : variation_(variation),
+          probability_(probability),
+          misfit_percent_(misfit_percent),
+          landings_(probability.value_or(0.0)) {}
 
     /// Surplus [points] over the reserve of the mission as stated, or with the search's probability; none where its
     /// schedule does not fit.
     std::optional<double> surplus(double value) {
         const auto [known, is_new] = known_.try_emplace(value);
-        if (is_new && fits(value)) {
-            const auto at = mission(value);
-            known->second =
-                probability_ ? drawn_landings(at, *probability_).spare_percent(*probability_) : surplus_percent(at);
-        }
+        if (!is_new) return known->second;
+        if (const auto at = fitting_mission(value))
+            known->second = probability_ ? spare_of_flights_percent(*at, value) : surplus_percent(*at);
         return known->second;
     }
 
-    bool fits(double value) {
-        try {
-            mission(value);
-            return true;
-        } catch (const InputError& error) {
-            misfit_ = error;
-            return false;
-        }
-    }
+    bool fits(double value) { return fitting_mission(value).has_value(); }
 
     /// Doubles `value` until the surplus is negative; false if it stays positive up to `max_value`.
     bool find_end(double value, double max_value) {
+        if (probability_) value = last_likely_doubling(value, max_value);
         for (; value <= max_value; value *= 2.0) {
             const auto percent = surplus(value);
             if (percent && *percent < 0.0) {
@@ -124,8 +113,7 @@ class LimitSearch {
         FeasibilityLimit most;
         most.value = value;
         if (probability_) {
-            const auto landings = drawn_landings(at, *probability_);
-            most.margin_percent = std::max(0.0, landings.nominal_percent - landings.quantile_percent(*probability_));
+            most.margin_percent = margin_percent_.at(value);
             most.sources = collect_uncertainty(at.setup).sources;
         }
         most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
@@ -138,12 +126,44 @@ class LimitSearch {
     }
 
   private:
+    std::optional<Mission> fitting_mission(double value) {
+        try {
+            return mission(value);
+        } catch (const InputError& error) {
+            misfit_ = error;
+            return std::nullopt;
+        }
+    }
+
     /// With the schedule of least energy demand. Throws InputError where the mission's own does not fit.
     Mission mission(double value) const { return with_minimum_energy_schedule(variation_(value)); }
+
+    double spare_of_flights_percent(const Mission& at, double value) {
+        require_known_spread(at.setup);
+        const auto landings = landings_.landings(at, collect_uncertainty(at.setup));
+        const double landed_percent = landings.quantile_percent(*probability_);
+        margin_percent_[value] = std::max(0.0, landings.nominal_percent - landed_percent);
+        return landed_percent - landings.reserve_percent;
+    }
+
+    /// The greatest of `value`, its double ... with a surplus, of those below where the mission as stated has none: there
+    /// flights have none either, unless they charge.
+    double last_likely_doubling(double value, double max_value) {
+        LimitSearch stated(variation_, std::nullopt, misfit_percent_);
+        if (!stated.find_end(value, max_value) || mission(stated.bad()).setup.may_charge) return value;
+        for (double last = stated.bad() / 2.0; last > value; last /= 2.0) {
+            const auto percent = surplus(last);
+            if (!percent) return value;
+            if (*percent >= 0.0) return last;
+        }
+        return value;
+    }
 
     const MissionVariation& variation_;
     std::optional<double> probability_;
     double misfit_percent_;
+    LandingSearch landings_;
+    std::map<double, double> margin_percent_;  ///< of drawn flights, by value
     std::optional<InputError> misfit_;
     std::map<double, std::optional<double>> known_;  ///< surplus by value: drawn flights take long
     std::optional<double> good_;

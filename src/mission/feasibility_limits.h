@@ -1,9 +1,8 @@
 #pragma once
 
-#include "mission/mission_read_options.h"
+#include "mission/mission_file.h"
 #include "mission/plan.h"
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -68,9 +67,6 @@ struct Reach {
 };
 
 ReachUnit reach_unit_of(const MissionSetup& mission);
-
-/// Reads the mission's file with given options.
-using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
 
 /// longest_cruise, max_circles, farthest_return or most_path_times, by default of the mission's own unit; throws as
 /// they do.

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -252,8 +254,8 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     return Mission{std::move(setup), std::move(schedule)};
 }
 
-MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& path,
-                            const MissionReadOptions& reading) {
+/// The mission without its schedule and with the durations that it states.
+MissionSetup setup_from(const TomlTable& root, const std::filesystem::path& path, const MissionReadOptions& reading) {
     if (root.is_table("conditions"))
         throw InputError(root.where("conditions"), "conditions are no longer read: a cruise follows its airspeed alone",
                          "leave them out, or state airspeed_m_per_s at the top of the mission, with a model of "
@@ -275,11 +277,6 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);
     find_power_model(root, mission);
-    const auto stated_s = mission.duration_s;
-    if (reading.cruise_s) {
-        mission.duration_s[Phase::cruise] = *reading.cruise_s;
-        mission.duration_is_stated[Phase::cruise] = true;
-    }
     read_mission_battery(root, mission);
     note_other_cells(mission);
     mission.may_charge = root.optional_boolean("may_charge").value_or(false);
@@ -293,6 +290,15 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
         mission.notes.push_back(fmt::format("reserve_soc_percent = {} is {} % of the charge; are {:.3g} % meant?",
                                             percent, percent, units::percentage(percent, 1.0)));
     mission.uncertainty = read_uncertainty(root, mission.compute, mission.mechanical.has_value());
+    return mission;
+}
+
+MissionVariant scheduled_mission(const TomlTable& root, const MissionReadOptions& reading, MissionSetup mission) {
+    const auto stated_s = mission.duration_s;
+    if (reading.cruise_s) {
+        mission.duration_s[Phase::cruise] = *reading.cruise_s;
+        mission.duration_is_stated[Phase::cruise] = true;
+    }
     return with_read_schedule(root, reading, stated_s, std::move(mission));
 }
 
@@ -300,10 +306,28 @@ MissionVariant mission_from(const TomlTable& root, const std::filesystem::path& 
 
 MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
                              const MissionReadOptions& reading) {
-    const auto root = parse_toml(text, path.string(), FileKind::mission);
-    std::optional<MissionVariant> mission;
-    root.collect_unknown_keys([&] { mission = mission_from(root, path, reading); });
-    return std::move(*mission);
+    return mission_loader(std::string(text), path)(reading);
+}
+
+MissionLoader mission_loader(std::string text, std::filesystem::path path) {
+    struct Read {
+        TomlTable root;
+        MissionSetup setup;
+    };
+    auto of_cruise = std::make_shared<std::optional<Read>>();
+    return [text = std::move(text), path = std::move(path), of_cruise](const MissionReadOptions& reading) {
+        const bool is_of_cruise =
+            reading.cruise_s && !reading.circles && !reading.return_after_m && !reading.path_times;
+        if (is_of_cruise && *of_cruise) return scheduled_mission((*of_cruise)->root, reading, (*of_cruise)->setup);
+        const auto root = parse_toml(text, path.string(), FileKind::mission);
+        std::optional<MissionVariant> mission;
+        root.collect_unknown_keys([&] {
+            auto setup = setup_from(root, path, reading);
+            mission = scheduled_mission(root, reading, setup);
+            if (is_of_cruise) of_cruise->emplace(Read{root, std::move(setup)});
+        });
+        return std::move(*mission);
+    };
 }
 
 MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading) {

@@ -4,6 +4,8 @@
 #include "mission/mission_read_options.h"
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace flightwatt::mission {
@@ -16,5 +18,12 @@ MissionVariant read_mission(const std::filesystem::path& path, const MissionRead
 /// Reads a mission from text as read_mission(). `path` names it, and relative paths begin in its folder.
 MissionVariant parse_mission(std::string_view text, const std::filesystem::path& path,
                              const MissionReadOptions& reading = {});
+
+/// Reads a mission's file with given options.
+using MissionLoader = std::function<MissionVariant(const MissionReadOptions&)>;
+
+/// Reads a mission as parse_mission(); that with another duration of its cruise without reading its files again. Of one
+/// thread.
+MissionLoader mission_loader(std::string text, std::filesystem::path path);
 
 }  // namespace flightwatt::mission

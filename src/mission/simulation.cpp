@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -40,10 +41,26 @@ std::vector<double> output_times(const LoadSegment& segment, double output_s) {
     return times;
 }
 
+/// The mechanical power of a segment; that of the last time is not computed again.
+class SegmentPower {
+  public:
+    explicit SegmentPower(const LoadSegment& segment) : segment_(segment) {}
+
+    double at(double time_s) {
+        if (time_s != time_s_) mechanical_w_ = mechanical_w(segment_, time_s_ = time_s);
+        return mechanical_w_;
+    }
+
+  private:
+    const LoadSegment& segment_;
+    double time_s_ = std::numeric_limits<double>::quiet_NaN();
+    double mechanical_w_ = 0.0;
+};
+
 /// Adds a row unless it equals the last one: not every end of a segment is a jump.
-void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double time_s,
-             const battery::Discharge& state) {
-    SocRow row{time_s, segment.phase, mechanical_w(segment, time_s), segment.compute_w, power_w(segment, time_s)};
+void add_row(SocCurve& curve, const battery::Battery& battery, const LoadSegment& segment, double flying_w,
+             double time_s, const battery::Discharge& state) {
+    SocRow row{time_s, segment.phase, flying_w, segment.compute_w, flying_w + segment.compute_w};
     battery::BatteryState now = state;
     if (const auto ended_at_s = state.ended_at_s()) {
         // Without a load the RC pair discharges itself.
@@ -68,27 +85,31 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
                                battery::Discharge state, SocCurve& curve) {
     const auto& battery = supply.battery;
     const battery::DischargeOptions options{steps.integration_s, supply.cutoff_voltage_v};
-    const auto load = [&](double time_s) { return power_w(segment, time_s); };
+    SegmentPower power(segment);
+    const auto load = [&](double time_s) { return power.at(time_s) + segment.compute_w; };
+    const auto add = [&](double time_s, const battery::Discharge& now) {
+        add_row(curve, battery, segment, power.at(time_s), time_s, now);
+    };
     const auto times = output_times(segment, steps.output_s);
     if (segment.soc_drop_percent > 0.0 && !state.ended_at_s()) {
-        add_row(curve, battery, segment, times.front(), state);
+        add(times.front(), state);
         state = apply_charge_drop(state, segment);
     }
-    add_row(curve, battery, segment, times.front(), state);
+    add(times.front(), state);
     for (std::size_t i = 1; i < times.size(); ++i) {
         if (!state.ended_at_s()) {
             state = discharge(battery, {load, times[i - 1], times[i]}, state, options);
             if (state.undeliverable) {
-                add_row(curve, battery, segment, state.undeliverable->time_s, state);
+                add(state.undeliverable->time_s, state);
                 return state;
             }
             if (const auto ended_at_s = state.ended_at_s()) {
                 const battery::Discharge before{static_cast<const battery::BatteryState&>(state)};
-                add_row(curve, battery, segment, *ended_at_s, before);  // the last row with a current,
-                add_row(curve, battery, segment, *ended_at_s, state);   // and the first without
+                add(*ended_at_s, before);  // the last row with a current,
+                add(*ended_at_s, state);   // and the first without
             }
         }
-        add_row(curve, battery, segment, times[i], state);
+        add(times[i], state);
     }
     return state;
 }

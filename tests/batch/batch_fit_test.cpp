@@ -7,6 +7,8 @@
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 
+#include <functional>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,6 +51,57 @@ TEST(BatchFit, IsReadBackAsItWasWritten) {
     const auto plain = mechanical::read_mechanical_model(out / model_name);
     EXPECT_FALSE(plain.phases[flight::Phase::cruise].errors);
     EXPECT_TRUE(plain.validation && plain.validation->default_model == "fourier");
+}
+
+TEST(BatchFit, IsUnchangedWithItsKeyAndAllOfItsFiles) {
+    const auto out = test::scratch_dir();
+    EXPECT_FALSE(unchanged_batch_fit(out, "its key"));
+    auto fit = some_fit();
+    fit.key = "its key";
+    write_batch_fit(fit, out);
+    EXPECT_FALSE(unchanged_batch_fit(out, "another"));
+    const auto read = unchanged_batch_fit(out, fit.key).value();
+    std::filesystem::create_directories(out / "again");
+    write_batch_fit(read, out / "again");
+    for (const auto* name : {model_name, model_errors_name, fit_name}) {
+        const auto text = read_file(out / name);
+        EXPECT_EQ(read_file(out / "again" / name), text);
+        auto changed = text;
+        changed[changed.find_last_of("0123456789")] ^= 1;  // another digit
+        for (const auto& damaged : {changed, text.substr(0, text.size() / 2), std::string()}) {
+            write_file_atomically(out / name, damaged);
+            EXPECT_FALSE(unchanged_batch_fit(out, fit.key)) << name;
+        }
+        std::filesystem::remove(out / name);
+        EXPECT_FALSE(unchanged_batch_fit(out, fit.key)) << name;
+        write_file_atomically(out / name, text);
+        EXPECT_TRUE(unchanged_batch_fit(out, fit.key)) << name;
+    }
+}
+
+TEST(BatchFit, HasAnotherKeyWithOtherOptionsNamesOrFlights) {
+    const auto fit = some_fit();
+    BatchFlights flights(2);
+    flights[0].record.flight = "a";
+    flights[0].selection.flights = {{"a", {{true, true, false}}}};
+    const auto key = fit_key(flights, fit);
+    EXPECT_EQ(fit_key(flights, fit), key);
+    const auto differs = [&](const std::function<void(BatchFit&, BatchFlights&)>& change) {
+        auto other_fit = fit;
+        auto others = flights;
+        change(other_fit, others);
+        return fit_key(others, other_fit) != key;
+    };
+    EXPECT_TRUE(differs([](auto& of, auto&) { of.options.phases.order = 3; }));
+    EXPECT_TRUE(differs([](auto& of, auto&) { of.options.weighting = mechanical::Weighting::agreement; }));
+    EXPECT_TRUE(differs([](auto& of, auto&) { of.options.name = "four"; }));
+    EXPECT_TRUE(differs([](auto& of, auto&) { of.keep.clear(); }));
+    EXPECT_TRUE(differs([](auto& of, auto&) { of.copies = {{"b", "a"}}; }));
+    EXPECT_TRUE(differs([](auto&, auto& of) { of[0].record.fingerprint = "changed"; }));
+    EXPECT_TRUE(differs([](auto&, auto& of) { of[0].record.results = "changed"; }));
+    EXPECT_TRUE(differs([](auto&, auto& of) { of[0].selection.flights[0].phases.values[1] = false; }));
+    EXPECT_TRUE(differs([](auto&, auto& of) { of[1].selection.flights = {{"b", {}}}; }));
+    EXPECT_FALSE(differs([](auto&, auto& of) { of[1].record.fingerprint = "not used"; }));
 }
 
 TEST(BatchFit, IsNoneWithoutAModelAndRefusesWhatIsDamaged) {

@@ -92,6 +92,22 @@ void note_plan(const StageCall& call, const batch::BatchPlan& plan, const batch:
             note(call, fmt::format("{}: its log {} is missing; its results are kept", log.flight, log.path));
 }
 
+/// Fits with the options of `fitted`.
+void fit_measured(const StageCall& call, ModelKind kind, std::vector<mechanical::MeasuredFlight> measured,
+                  FittedBatch& fitted) {
+    std::vector<mechanical::FlightSamples> samples;
+    samples.reserve(measured.size());
+    for (auto& flight : measured)
+        samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
+    auto& fit = fitted.fit;
+    auto of_samples = batch::fit_flights(samples, fit.options);
+    fit.model = std::move(of_samples.model);
+    fit.bands = std::move(of_samples.bands);
+    if (kind == ModelKind::physical) fitted.physical = fit_motion(call, measured, fit.model);
+    for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
+    if (kind != ModelKind::fourier) add_best_power(measured, fit.options, fit.model);
+}
+
 const std::filesystem::path& made(const std::filesystem::path& folder) {
     make_directories(folder);
     return folder;
@@ -169,26 +185,22 @@ std::optional<FittedBatch> fit_folder(const StageCall& call, const BatchArgument
     if (flown.groups.size() > 1 && !batch.load.aircraft && !arguments.flights.mix_aircraft)
         throw NoResultError("the catalogue is written, and no model: " +
                             show_aircraft(call, flown.groups, flown.flights, true));
-    const auto& options = arguments.model.fit;
-    const auto kind = arguments.model.kind;
-    auto measured = read_samples(flights, batch);
-    std::vector<mechanical::FlightSamples> samples;
-    samples.reserve(measured.size());
-    for (auto& flight : measured)
-        samples.push_back(std::move(flight.samples));  // of thousands, two copies are too many
-    FittedBatch fitted{batch::fit_flights(samples, options), {}, {}};
-    auto& fit = fitted.fit;
-    if (kind == ModelKind::physical) fitted.physical = fit_motion(call, measured, fit.model);
-    for (std::size_t i = 0; i < measured.size(); ++i) measured[i].samples = std::move(samples[i]);
-    if (kind != ModelKind::fourier) add_best_power(measured, options, fit.model);
-    fit.copies = listed.copies;
-    fit.excluded = batch.load.excluded;
-    fit.keep = batch.load.keep;
-    fit.other_aircraft = flown.others;
-    fitted.table = model_table(fit.model, published);
+    FittedBatch fitted{
+        {arguments.model.fit, batch.load.excluded, batch.load.keep, listed.copies, flown.others, {}, {}, {}}, {}, {}};
+    // How a physical model came about is in no file.
+    if (arguments.model.kind != ModelKind::physical)
+        fitted.fit.key = fmt::format("{} {}", fit_key(flights, fitted.fit), static_cast<int>(arguments.model.kind));
+    auto unchanged = fitted.fit.key.empty() ? std::nullopt : batch::unchanged_batch_fit(batch.out, fitted.fit.key);
+    if (unchanged) {
+        fitted.fit.model = std::move(unchanged->model);
+        fitted.fit.bands = std::move(unchanged->bands);
+    } else {
+        fit_measured(call, arguments.model.kind, read_samples(flights, batch), fitted);
+    }
+    fitted.table = model_table(fitted.fit.model, published);
     for (const auto* name : batch::table_names)
         write_file_atomically(batch.out / name, table_text(fitted.table, name), batch.out / batch::temporary_folder);
-    write_batch_fit(fit, batch.out);
+    write_batch_fit(fitted.fit, batch.out);
     return fitted;
 }
 

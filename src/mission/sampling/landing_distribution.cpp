@@ -17,47 +17,6 @@ constexpr std::uint64_t seed_of_flights = 0x666c6967687473;
 constexpr std::size_t first_flights = 1250;
 constexpr double far_in_standard_errors = 4.0;
 
-/// Draws flights of a mission, more of them from call to call.
-class LandingSampler {
-  public:
-    LandingSampler(const Mission& mission, const FlightUncertainty& uncertainty)
-        : mission_(mission), uncertainty_(uncertainty), normal_count_(count_normals(mission.setup)) {
-        DrawnFlight as_stated{mission.setup, {}};
-        draw(std::vector<double>(normal_count_), as_stated);
-        result_.nominal_percent = simulate_flight(as_stated).remaining_percent;
-        result_.reserve_percent = mission.setup.reserve_soc_percent;
-        if (uncertainty.sources.varied.empty()) result_.left_percent = {result_.nominal_percent};
-    }
-
-    /// Up to `flights` in all; one where nothing varies.
-    const LandingDistribution& draw_until(std::size_t flights) {
-        if (uncertainty_.sources.varied.empty()) return result_;
-        auto& left_percent = result_.left_percent;
-        const FlightDraw draw_number = [&](std::size_t i, DrawnFlight& flight) {
-            draw(draw_normals(normal_count_, seed_of_flights, i), flight);
-        };
-        for (const auto& landing :
-             fly_drawn(mission_.setup, draw_number, left_percent.size(), flights - left_percent.size()))
-            left_percent.push_back(landing.remaining_percent);
-        std::ranges::sort(left_percent);
-        result_.sd_percent = sample_sd(left_percent);
-        return result_;
-    }
-
-  private:
-    void draw(std::span<const double> normals, DrawnFlight& flight) const {
-        const auto& planned_s = mission_.setup.duration_s;
-        apply_draw(mission_.setup, uncertainty_, normals, flight.setup);
-        flight.segments = load_segments(
-            flight.setup, rescale_to_flown_durations(mission_.schedule, planned_s, flight.setup.duration_s));
-    }
-
-    const Mission& mission_;
-    const FlightUncertainty& uncertainty_;
-    std::size_t normal_count_;
-    LandingDistribution result_;
-};
-
 /// Energy demanded after the battery failed, as a fraction of its full energy [points].
 double unserved_demand_percent(const DrawnFlight& flight, double failed_at_s) {
     double missed_j = 0.0;
@@ -88,6 +47,36 @@ FlightOutcome land(const DrawnFlight& flight, const battery::Discharge& charge, 
     return landing;
 }
 
+/// Draws flights of a mission, more of them from call to call.
+class LandingSampler {
+  public:
+    LandingSampler(const Mission& mission, const FlightUncertainty& uncertainty)
+        : mission_(mission), draw_(landing_draw(mission, uncertainty)), varies_(!uncertainty.sources.varied.empty()) {
+        DrawnFlight as_stated{mission.setup, {}};
+        draw_(stated_flight, as_stated);
+        result_.nominal_percent = simulate_flight(as_stated).remaining_percent;
+        result_.reserve_percent = mission.setup.reserve_soc_percent;
+        if (!varies_) result_.left_percent = {result_.nominal_percent};
+    }
+
+    /// Up to `flights` in all; one where nothing varies.
+    void draw_until(std::size_t flights) {
+        if (!varies_) return;
+        auto left_percent = std::move(result_.left_percent);
+        for (const auto& landing : fly_drawn(mission_.setup, draw_, left_percent.size(), flights - left_percent.size()))
+            left_percent.push_back(landing.remaining_percent);
+        result_.set_left_percent(std::move(left_percent));
+    }
+
+    const LandingDistribution& landings() const { return result_; }
+
+  private:
+    const Mission& mission_;
+    FlightDraw draw_;
+    bool varies_;
+    LandingDistribution result_;
+};
+
 }  // namespace
 
 double LandingDistribution::below() const {
@@ -108,19 +97,46 @@ double LandingDistribution::quantile_percent(double probability) const {
     return left_percent[std::min(missed, last)];
 }
 
+void LandingDistribution::set_left_percent(std::vector<double> percent) {
+    left_percent = std::move(percent);
+    std::ranges::sort(left_percent);
+    sd_percent = sample_sd(left_percent);
+}
+
+FlightDraw landing_draw(const Mission& mission, const FlightUncertainty& uncertainty) {
+    const auto count = count_normals(mission.setup);
+    return [&mission, &uncertainty, count](std::size_t number, DrawnFlight& flight) {
+        const auto normals =
+            number == stated_flight ? std::vector<double>(count) : draw_normals(count, seed_of_flights, number);
+        apply_draw(mission.setup, uncertainty, normals, flight.setup);
+        flight.segments = load_segments(
+            flight.setup,
+            rescale_to_flown_durations(mission.schedule, mission.setup.duration_s, flight.setup.duration_s));
+    };
+}
+
 LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty, std::size_t flights) {
-    return LandingSampler(mission, uncertainty).draw_until(flights);
+    LandingSampler sampler(mission, uncertainty);
+    sampler.draw_until(flights);
+    return sampler.landings();
 }
 
 LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
                                               double probability, std::size_t max_flights) {
+    LandingSampler sampler(mission, uncertainty);
+    draw_until_known([&](std::size_t flights) { sampler.draw_until(flights); }, sampler.landings(), probability,
+                     max_flights);
+    return sampler.landings();
+}
+
+void draw_until_known(const std::function<void(std::size_t flights)>& draw_until, const LandingDistribution& landings,
+                      double probability, std::size_t max_flights) {
     if (!(probability >= 0.5 && probability < 1.0))
         throw std::invalid_argument("draw_landings_until_known: the probability is not from 0.5 to below 1");
-    LandingSampler sampler(mission, uncertainty);
     for (auto flights = std::min(first_flights, max_flights);; flights = std::min(2 * flights, max_flights)) {
-        const auto& landings = sampler.draw_until(flights);
+        draw_until(flights);
         const double off = std::abs(landings.below() - (1.0 - probability));
-        if (flights == max_flights || off > far_in_standard_errors * landings.standard_error()) return landings;
+        if (flights == max_flights || off > far_in_standard_errors * landings.standard_error()) return;
     }
 }
 
@@ -139,16 +155,23 @@ FlightOutcome simulate_flight(const DrawnFlight& flight) {
     return land(flight, charge, std::move(noted_percent));
 }
 
-std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
-                                     std::size_t count) {
+void for_each_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first, std::size_t count,
+                    const std::function<void(std::size_t number, const DrawnFlight& flight)>& work) {
     constexpr std::size_t at_once = 64;
-    std::vector<FlightOutcome> outcomes(count);
     for_each_in_parallel((count + at_once - 1) / at_once, [&](std::size_t block) {
         DrawnFlight flight{mission, {}};
-        for (std::size_t i = block * at_once; i < std::min(count, (block + 1) * at_once); ++i) {
-            draw(first + i, flight);
-            outcomes[i] = simulate_flight(flight);
+        for (std::size_t i = first + block * at_once; i < first + std::min(count, (block + 1) * at_once); ++i) {
+            draw(i, flight);
+            work(i, flight);
         }
+    });
+}
+
+std::vector<FlightOutcome> fly_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first,
+                                     std::size_t count) {
+    std::vector<FlightOutcome> outcomes(count);
+    for_each_drawn(mission, draw, first, count, [&](std::size_t number, const DrawnFlight& flight) {
+        outcomes[number - first] = simulate_flight(flight);
     });
     return outcomes;
 }

@@ -20,6 +20,8 @@ struct LandingDistribution {
     double reserve_percent = 0.0;
     double sd_percent = 0.0;  ///< standard deviation of left_percent; 0 if nothing differs
 
+    /// Sets left_percent, in any order, and its standard deviation.
+    void set_left_percent(std::vector<double> percent);
     /// Returns the fraction of the flights that lands below the reserve.
     double below() const;
     /// Returns the standard error of below(), by the number of flights; 0 if nothing differs.
@@ -127,8 +129,21 @@ inline bool misses_reserve(const FlightOutcome& landing, double reserve_soc_perc
 /// copying less is faster.
 using FlightDraw = std::function<void(std::size_t number, DrawnFlight& flight)>;
 
+/// Returns how draw_landings() draws, and for the number `stated_flight` the mission as stated. Refers to its arguments.
+FlightDraw landing_draw(const Mission& mission, const FlightUncertainty& uncertainty);
+inline constexpr auto stated_flight = static_cast<std::size_t>(-1);
+
+/// Calls `draw_until`, which adds flights to `landings`, with more and more flights until draw_landings_until_known() has
+/// enough of them.
+void draw_until_known(const std::function<void(std::size_t flights)>& draw_until, const LandingDistribution& landings,
+                      double probability, std::size_t max_flights = landing_flights);
+
 /// Simulates one flight through its segments by advance_segment().
 FlightOutcome simulate_flight(const DrawnFlight& flight);
+
+/// Draws `count` flights of a mission from number `first`, on all threads.
+void for_each_drawn(const MissionSetup& mission, const FlightDraw& draw, std::size_t first, std::size_t count,
+                    const std::function<void(std::size_t number, const DrawnFlight& flight)>& work);
 
 /// Draws and simulates `count` flights of a mission from number `first`, on all threads. The result of a flight depends
 /// on its number alone.
