@@ -56,13 +56,16 @@ function editCommand({ spacing, heading }: PlanOptions): string {
 
 /// Returns the commands that give the same.
 export function planCommand(folder: string, options: PlanOptions, payload_kg?: number): string {
-  const samples = options.packs > 1 ? "" : " --samples 1000";
+  const samples = options.packs > 1 ? "" : ` --samples ${drawn_flights}`;
   const mission = quoted(options.plan.replace(/^missions\//, ""));
   if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${mission}${samples}`;
   const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, payload_kg);
   const make = `flightwatt ${args.map(quoted).join(" ")} -o plan.toml`;
   return `${make}${editCommand(options)} && flightwatt simulate plan.toml${samples}`;
 }
+
+/// Of a plan, for its chance.
+const drawn_flights = 1000;
 
 function remarksOf(err: string): string[] {
   const lines = err.split("\n").filter((line) => /: (warning|chosen|note): /.test(line));
@@ -120,7 +123,7 @@ export async function flyPlan(
         payload_kg,
       );
     if (typeof made === "string") return made;
-    const curve = await project.curveOrError(made.file);
+    const curve = await project.curveOrError(made.file, drawn_flights);
     if (typeof curve === "string") return curve;
     const path = await engine.run(["path", made.file, "--json", "-o", "legs.csv"]);
     const mission = await project.text(made.file);
