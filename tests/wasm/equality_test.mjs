@@ -190,7 +190,7 @@ const parts = {
   async fits() {
     const batch = newRow("batch: files", 1e-6);
     const tree = treeOf(path.join(project, "logs"));
-    await both(batch, "logs", ["batch", ...own, "-o", path.join(scratch, "made/batch")], tree, written(1e-6));
+    await both(batch, "logs", ["batch", ...own, "--jobs", "1", "-o", path.join(scratch, "made/batch")], tree, written(1e-6));
     const row = newRow("fit, validate, battery, trends", 1e-6);
     await both(row, "fit logs", ["fit", ...own, "--json"], treeOf(path.join(project, "logs")), printed(1e-6));
     await both(row, "validate logs", ["validate", ...own, "--json"], treeOf(path.join(project, "logs")), printed(1e-6));
