@@ -138,16 +138,13 @@ class LivePage {
              const compute::ComputeModel& compute, const std::optional<live::PredictionInput>& basis)
         : compute_(compute), basis_(basis) {
         if (!address) return;
-        const auto web = report::read_live_files(report::web_folder());
-        server_.emplace(*address, report::live_page_html(web));
+        server_.emplace(*address, report::live_page_html(report::read_front_end(report::web_folder(), "live")));
         cli::note(call, "the page is at " + server_->address());
         if (!server_->is_local())
             cli::warn(call,
                       fmt::format("--serve {0}: every device that reaches this address can read the page, without "
                                   "a password; --serve PORT serves it to this machine only",
                                   *address));
-        if (web.libraries.empty())
-            cli::warn(call, "the page has no charts: what draws them is not installed (scripts/install_dependencies)");
     }
 
     void print_state(const live::LiveState& state) {

@@ -1,4 +1,5 @@
-// Bundles the front end: node web/build.mjs FOLDER writes FOLDER/app.js (one script, without modules) and FOLDER/app.css.
+// Bundles the front end: node web/build.mjs FOLDER writes FOLDER/app.js (one script, without modules) and FOLDER/app.css,
+// and of the page of `flightwatt watch --serve` FOLDER/live.js and FOLDER/live.css.
 // With the engine, node web/build.mjs FOLDER flightwatt.wasm, also FOLDER/flightwatt.html, one file with all inside, and
 // FOLDER/site, the same to be served.
 import { build } from "esbuild";
@@ -11,13 +12,13 @@ import { workerText } from "./worker_text.mjs";
 const here = fileURLToPath(new URL(".", import.meta.url));
 const [folder, module] = process.argv.slice(2);
 if (!folder || process.argv.length > 4) {
-  console.error("build.mjs: error: expected the folder for app.js and app.css: node web/build.mjs FOLDER [flightwatt.wasm]");
+  console.error("build.mjs: error: expected the folder of the bundles: node web/build.mjs FOLDER [flightwatt.wasm]");
   process.exit(2);
 }
 try {
   await build({
     absWorkingDir: here,
-    entryPoints: { app: "app/src/main.tsx" },
+    entryPoints: { app: "app/src/main.tsx", live: "app/src/live/main.tsx" },
     outdir: path.resolve(folder),
     bundle: true,
     minify: true,

@@ -158,7 +158,7 @@ function inTypeOfPapers(theme) {
   return config;
 }
 
-const theme = inTypeOfPapers(JSON.parse(await script("theme.json")).light);
+const theme = inTypeOfPapers(JSON.parse(await script("theme.json")));
 for (const { id: name, spec: plain } of figuresOf(JSON.parse(await readFile(path.join(folder, "document.json"), "utf8")))) {
   const whole = { ...plain, config: theme };
   await writeFile(path.join(folder, `${name}.vl.json`), `${JSON.stringify(whole)}\n`);

@@ -6,7 +6,6 @@
 #include "report/document/plain_answers.h"
 
 #include <boost/algorithm/string/replace.hpp>
-#include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {
@@ -33,13 +32,15 @@ std::string filled_page(std::string_view name, const std::map<std::string_view, 
 
 std::filesystem::path web_folder() { return data_folder("web", "FLIGHTWATT_WEB", "the report's web files"); }
 
-FrontEnd read_front_end(const std::filesystem::path& folder) {
-    for (const auto* name : {"app.css", "app.js"})
-        if (open_error(folder / name))
-            throw InputError({(folder / name).string()}, "this part of the page is missing",
+FrontEnd read_front_end(const std::filesystem::path& folder, const std::string& name) {
+    const auto style = folder / (name + ".css");
+    const auto script = folder / (name + ".js");
+    for (const auto& file : {style, script})
+        if (open_error(file))
+            throw InputError({file.string()}, "this part of the page is missing",
                              "run scripts/install_dependencies with access to the npm registry, and scripts/build "
                              "release programs");
-    return {read_file(folder / "app.css"), read_file(folder / "app.js")};
+    return {read_file(style), read_file(script)};
 }
 
 std::string read_engine(const std::filesystem::path& folder) {
@@ -71,29 +72,10 @@ std::string script_json(const Json& json) {
     return boost::replace_all_copy(text, "<", "\\u003c");  // no </script> and no <!--
 }
 
-LiveFiles read_live_files(const std::filesystem::path& folder) {
-    LiveFiles files{read_file(folder / "watch.css"), read_file(folder / "theme.json"), "",
-                    read_file(folder / "watch.js")};
-    for (const std::string library : {"vega", "vega-lite", "vega-embed"}) {
-        const auto path = folder / "node_modules" / library / "build" / (library + ".min.js");
-        if (open_error(path)) return {files.style, files.theme, "", files.script};
-        files.libraries += read_file(path) + "\n";
-    }
-    return files;
-}
-
-std::string live_page_html(const LiveFiles& files) {
-    std::string charts;
-    for (const auto* id : {"charge", "power", "altitude"})
-        charts += fmt::format("<div class=\"chart\" id=\"{0}\" role=\"img\" aria-label=\"{0} over time\"></div>\n", id);
-    if (files.libraries.empty())
-        charts = "<p>No charts: their libraries are not installed (scripts/install_dependencies).</p>\n";
-    return filled_page("watch", {{"version", FLIGHTWATT_VERSION},
-                                 {"style", files.style},
-                                 {"charts", charts},
-                                 {"theme", script_json(Json::parse(files.theme))},
-                                 {"libraries", files.libraries.empty() ? "" : inline_script(files.libraries)},
-                                 {"script", inline_script(files.script)}});
+std::string live_page_html(const FrontEnd& front_end) {
+    return filled_page(
+        "live",
+        {{"version", FLIGHTWATT_VERSION}, {"style", front_end.style}, {"script", inline_script(front_end.script)}});
 }
 
 }  // namespace flightwatt::report

@@ -23,8 +23,9 @@ struct FrontEnd {
     std::string engine = {};  ///< the program as WebAssembly, compressed by gzip; empty: the page does not run it
 };
 
-/// Reads app.css and app.js. Throws InputError for a missing one, with how to make them.
-FrontEnd read_front_end(const std::filesystem::path& folder);
+/// Reads NAME.css and NAME.js: "app" is the report's, "live" that of a flight in progress. Throws InputError for a
+/// missing one, with how to make them.
+FrontEnd read_front_end(const std::filesystem::path& folder, const std::string& name = "app");
 
 /// Reads flightwatt.wasm.gz, the program for browsers. Throws InputError where it is missing, with how to make it.
 std::string read_engine(const std::filesystem::path& folder);
@@ -36,19 +37,8 @@ std::string page_html(const Json& document, const FrontEnd& front_end);
 /// Returns JSON without '<', for an HTML script element.
 std::string script_json(const Json& json);
 
-/// The files of the live page.
-struct LiveFiles {
-    std::string style;
-    std::string theme;      ///< Vega's configuration in light and dark, JSON
-    std::string libraries;  ///< Vega, Vega-Lite and Vega-Embed; empty if they are not installed
-    std::string script;
-};
-
-/// Reads the files of the live page. Throws InputError for a missing one that is not a library.
-LiveFiles read_live_files(const std::filesystem::path& folder);
-
-/// Returns the page of a flight in progress, which receives the events of its server (docs/live.md). Without the
-/// libraries it has no charts.
-std::string live_page_html(const LiveFiles& files);
+/// Returns the page of a flight in progress, which receives the events of its server (docs/live.md) and loads nothing
+/// else.
+std::string live_page_html(const FrontEnd& front_end);
 
 }  // namespace flightwatt::report

@@ -34,6 +34,7 @@ class WatchLinks : public testing::Test {
         for (int i = 0; i < lines; ++i) end = text.find('\n', end) + 1;
         write_file_atomically(folder / "flown.data", text.substr(0, end));
         std::filesystem::copy(log.string() + ".log", folder / "flown.log");
+        for (const auto* part : {"live.css", "live.js"}) write_file_atomically(folder / part, "");  // built by node
         const auto predicted = test::run_shell("flightwatt predict flown.data --json" + basis(), folder);
         ASSERT_EQ(predicted.code, 0) << predicted.err;
         expected = Json::parse(predicted.out);
@@ -47,7 +48,7 @@ class WatchLinks : public testing::Test {
 
     /// Watches what is played there so many times as fast, and returns the last prediction.
     Json watch(const std::string& source, const std::string& target, int speed, const std::function<bool()>& listens) {
-        const auto command = "exec flightwatt-watch " + source + basis() + " --json > watched";
+        const auto command = "export FLIGHTWATT_WEB=.; exec flightwatt-watch " + source + basis() + " --json > watched";
         const auto watching = start_shell(command);
         EXPECT_TRUE(test::wait_until(listens));
         const auto played =

@@ -70,6 +70,7 @@ TEST_F(PageServerTest, AnswersWithThePageAndTheState) {
     EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK\r\n"));
     EXPECT_THAT(page, testing::EndsWith("\r\n\r\n<!DOCTYPE html><p>page"));
     EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'none'"));
+    EXPECT_THAT(page, Not(HasSubstr("unsafe-eval")));
     EXPECT_THAT(answer_to("HEAD /"), testing::EndsWith("\r\n\r\n"));
     EXPECT_THAT(answer_to("GET /state"), testing::EndsWith("\r\n\r\nnull\n"));
     server.publish("{\"a\": 1}", "");

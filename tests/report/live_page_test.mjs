@@ -1,5 +1,5 @@
 // The page of `flightwatt watch --serve` in headless Chromium while a log is played: charts move, nothing is printed on the
-// console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM.
+// console, and it comes back when its server does. Environment: BIN, SOURCE, SCRATCH, PORT, WEB, CHROMIUM.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createWriteStream, openSync, rmSync } from "node:fs";
@@ -7,8 +7,8 @@ import { createRequire } from "node:module";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
-const { BIN, SOURCE, SCRATCH, PORT, FLIGHTWATT_WEB, CHROMIUM } = process.env;
-const require = createRequire(path.join(FLIGHTWATT_WEB, "package.json"));
+const { BIN, SOURCE, SCRATCH, PORT, WEB, CHROMIUM } = process.env;
+const require = createRequire(path.join(WEB, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = require("axe-core");
 const log = path.join(SOURCE, "logs/opterra_synthetic_01");

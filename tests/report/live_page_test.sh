@@ -12,11 +12,11 @@ skip() {
     exit 77
 }
 command -v node >/dev/null || skip node
-[[ -d $web/node_modules/playwright-core && -d $web/node_modules/vega ]] || skip web/node_modules
+[[ -d $web/node_modules/playwright-core && -d $web/node_modules/esbuild ]] || skip web/node_modules
 chromium=$(command -v chromium || command -v chromium-browser) || skip chromium
 
 rm -rf "$scratch"
 mkdir -p "$scratch"
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
-BIN=$bin SOURCE=$source SCRATCH=$scratch PORT=$port FLIGHTWATT_WEB=$web CHROMIUM=$chromium \
+BIN=$bin SOURCE=$source SCRATCH=$scratch PORT=$port WEB=$web CHROMIUM=$chromium \
     node --test --test-reporter=spec "$source/tests/report/live_page_test.mjs"

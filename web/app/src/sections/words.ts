@@ -3,7 +3,7 @@ import type { Outcome, PhaseName } from "../documents";
 import type { Grade } from "../ui/basics";
 
 export const phase_words: Record<PhaseName, string> = { takeoff: "take-off", cruise: "cruise", landing: "landing" };
-/// Names of colours in app.css.
+/// Names of colours in tokens.css.
 export const phase_tones: Record<PhaseName, string> = { takeoff: "take-off", cruise: "cruise", landing: "landing" };
 export const phase_names: PhaseName[] = ["takeoff", "cruise", "landing"];
 

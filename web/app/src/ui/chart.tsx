@@ -1,6 +1,7 @@
 // Charts as SVG, drawn for the width at hand: the title with its unit above the axis, lines with their names at their ends.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import "./chart.css";
 import { number } from "./format";
 
 /// Where values are on a chart, in pixels.

@@ -7,7 +7,7 @@ export type Place = [latitude_deg: number, longitude_deg: number];
 
 export interface Track {
   name: string;
-  /// A name of a colour in app.css.
+  /// A name of a colour in tokens.css.
   colour: string;
   places: Place[];
   dashed?: boolean;

@@ -9,7 +9,7 @@ type Values = (number | null | undefined)[];
 /// A line, or with `band` the area between two rows of values.
 export interface Line {
   name: string;
-  /// A name of a colour in app.css ("cruise", "ink", "alarm" ...).
+  /// A name of a colour in tokens.css ("cruise", "ink", "alarm" ...).
   colour: string;
   y: Values;
   band?: Values;
