@@ -214,8 +214,10 @@ CellRange possible_cells(double pack_voltage_v) {
 
 std::vector<AircraftGroup> group_aircraft(std::span<const FlightAircraft> flights) {
     auto all = divide(flights);
-    const auto others = std::ranges::stable_partition(all, [](const auto& of) { return of.fitting.size() == 1; });
-    const auto known = all.size() - others.size();
+    // As a range it is more than clang 14 compiles, which builds the fuzz targets.
+    const auto others =
+        std::stable_partition(all.begin(), all.end(), [](const auto& of) { return of.fitting.size() == 1; });
+    const auto known = static_cast<std::size_t>(others - all.begin());
     std::vector<AircraftGroup> groups;
     for (auto& of : all) {
         std::ranges::sort(of.group.flights);
