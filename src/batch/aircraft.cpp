@@ -130,7 +130,7 @@ std::vector<FittingFlights> divide(std::span<const FlightAircraft> flights) {
 std::string short_id(const std::string& id, std::span<const AircraftGroup> groups) {
     constexpr std::size_t min_length = 8;
     for (auto length = min_length; length < id.size(); ++length) {
-        const auto prefix = id.substr(0, length);
+        auto prefix = id.substr(0, length);
         if (std::ranges::none_of(groups,
                                  [&](const auto& other) { return other.id != id && other.id.starts_with(prefix); }))
             return prefix;
