@@ -16,7 +16,7 @@ import { giveNativeEngine } from "./native_engine.mjs";
 const { missionText } = await bundled("work/mission_text.ts");
 
 const web = fileURLToPath(new URL("../../", import.meta.url));
-const program = process.env.FLIGHTWATT;
+const program = process.env.FLIGHTWATT && path.resolve(process.env.FLIGHTWATT);
 const module = process.env.FLIGHTWATT_MODULE;
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const skip = program && existsSync(executablePath) ? false : "no FLIGHTWATT, or no browser";
