@@ -37,7 +37,7 @@ std::string flights_text(std::size_t flights) {
 
 /// What a power rests on: the flights' own mean, or the physical model or an assumption that changes it.
 std::string power_basis(const KnownAircraft& aircraft, const Question& question) {
-    const auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
+    auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
     if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
     auto basis = "physics, from power and motion " + measured;
     if (!aircraft.model.is_rotorcraft) return basis;

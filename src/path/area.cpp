@@ -1,9 +1,12 @@
 #include "path/area.h"
 
+#include "path/coverage/survey_cells.h"
 #include "path/plan_blocks.h"
 #include "path/plans/kml.h"
-#include "path/plans/patterns.h"
 #include "path/waypoint_files.h"
+
+#include <regex>
+#include <vector>
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
@@ -11,34 +14,64 @@
 namespace flightwatt::path {
 namespace {
 
-constexpr const char* one_polygon = "expected one polygon, in GeoJSON or KML";
+/// More would take minutes.
+constexpr std::size_t max_closed_corners = 300;
+constexpr const char* expected = "expected polygons, in GeoJSON or KML";
 
-Outline kml_outline(std::string_view text, const std::string& file) {
-    const auto document = load_kml(text, file, one_polygon);
-    const auto outlines = document.select_nodes("//outerBoundaryIs");
-    if (outlines.size() != 1) throw InputError({file}, fmt::format("has {} polygons", outlines.size()), one_polygon);
-    return {kml_places(document.select_nodes("//outerBoundaryIs/LinearRing/coordinates"), file).places,
-            !document.select_nodes("//innerBoundaryIs").empty()};
+/// Polygons of a placemark whose name says "no-fly" are not flown over.
+AreaOutlines kml_area(std::string_view text, const std::string& file) {
+    const auto document = load_kml(text, file, expected);
+    AreaOutlines found;
+    for (const auto& polygon : document.select_nodes("//Polygon")) {
+        const auto ring = [&](const char* boundary, std::vector<Outline>& outlines) {
+            const auto path = fmt::format("{}/LinearRing", boundary);
+            for (const auto& node : polygon.node().select_nodes(path.c_str()))
+                outlines.push_back(kml_places(node.node().select_nodes("coordinates"), file).places);
+        };
+        static const std::regex no_fly("no[ _-]?fly", std::regex::icase);
+        const auto placemark = polygon.node().select_node("ancestor::Placemark[1]/name");
+        if (std::regex_search(placemark.node().text().get(), no_fly)) {
+            ring("outerBoundaryIs", found.closed);
+            continue;
+        }
+        ring("outerBoundaryIs", found.areas);
+        ring("innerBoundaryIs", found.closed);
+    }
+    return found;
 }
 
 }  // namespace
 
 PlanEntries parse_area(std::string_view text, const std::string& file, double spacing_m, double heading_deg) {
-    const auto outline =
-        plan_format(text) == PlanFormat::flight_plan ? kml_outline(text, file) : geojson_outline(text, file);
-    if (outline.corners.size() < 3)
-        throw InputError({file}, fmt::format("its polygon has {} corners", outline.corners.size()), one_polygon);
-    const auto& origin = outline.corners.front();
-    std::vector<LocalPosition> corners;
-    for (const auto& corner : outline.corners) corners.push_back(to_local(corner, origin));
+    const auto outlines =
+        plan_format(text) == PlanFormat::flight_plan ? kml_area(text, file) : geojson_area(text, file);
+    if (outlines.areas.empty()) throw InputError({file}, "has no polygon to fly over", expected);
+    for (const auto* polygons : {&outlines.areas, &outlines.closed})
+        for (const auto& polygon : *polygons)
+            if (polygon.size() < 3)
+                throw InputError({file}, fmt::format("a polygon has {} corners", polygon.size()), expected);
+    std::size_t closed_corners = 0;
+    for (const auto& polygon : outlines.closed) closed_corners += polygon.size();
+    if (closed_corners > max_closed_corners)
+        throw InputError({file}, fmt::format("its holes and no-fly zones have {} corners", closed_corners),
+                         fmt::format("draw them with at most {}", max_closed_corners));
+    const auto& origin = outlines.areas.front().front();
+    const auto local = [&](const std::vector<Outline>& polygons) {
+        std::vector<Polygon> found;
+        for (const auto& polygon : polygons) {
+            found.emplace_back();
+            for (const auto& corner : polygon) found.back().push_back(to_local(corner, origin));
+        }
+        return found;
+    };
     PathEntry like;
     like.name = "the survey of the area";
     like.where = {file};
     PlanEntries survey;
     survey.starts_at_first_place = true;
-    if (outline.has_holes) survey.not_flown.emplace_back("the holes of the area are flown over");
-    PatternWriter{like, survey.entries}.survey(survey_lines(corners, spacing_m, heading_deg, {file}), spacing_m,
-                                               corners.front());
+    const SurveyedArea area{local(outlines.areas), local(outlines.closed)};
+    if (!write_area_survey({like, survey.entries}, area, spacing_m, heading_deg))
+        survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
     const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
     for (auto& entry : survey.entries) {
         if (!entry.place) continue;

@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "base/toml_reader.h"
+#include "path/plans/fence.h"
 #include "path/plans/json_text.h"
 #include "path/plans/patterns.h"
 
@@ -365,7 +366,10 @@ std::vector<double> item_numbers(const std::string& line, const Location& where)
 
 PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
     QgcReader reader(file, settings.is_rotorcraft);
-    return fly_items(reader.read(parse_json(text, file, "expected a plan of QGroundControl")), settings);
+    const auto json = parse_json(text, file, "expected a plan of QGroundControl");
+    auto plan = fly_items(reader.read(json), settings);
+    for (auto& note : fence_notes(json, plan.entries)) plan.not_flown.push_back(std::move(note));
+    return plan;
 }
 
 PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings) {

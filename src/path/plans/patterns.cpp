@@ -14,44 +14,59 @@ double scalar_product(const LocalPosition& a, const LocalPosition& b) {
     return a.east_m * b.east_m + a.north_m * b.north_m;
 }
 
-double distance_m(const LocalPosition& a, const LocalPosition& b) {
-    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
-}
-
 LocalPosition direction(double course_deg) { return moved({}, 1.0, course_deg); }
 
 }  // namespace
 
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+CourseAxes axes_of(double course_deg) { return {direction(course_deg), direction(course_deg + 90.0)}; }
+
+CoursePosition along_and_across(const LocalPosition& place, const CourseAxes& axes) {
+    return {scalar_product(place, axes.along), scalar_product(place, axes.right)};
+}
+
+CoursePosition along_and_across(const LocalPosition& place, double course_deg) {
+    return along_and_across(place, axes_of(course_deg));
+}
+
+LocalPosition place_at(const CoursePosition& position, double course_deg) {
+    const auto [along, right] = axes_of(course_deg);
+    return {position.across_m * right.east_m + position.along_m * along.east_m,
+            position.across_m * right.north_m + position.along_m * along.north_m};
+}
+
+std::vector<double> line_crossings(const Polygon& polygon, double course_deg, double offset_m) {
+    const auto axes = axes_of(course_deg);
+    std::vector<double> crossings;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto a = along_and_across(polygon[i], axes);
+        const auto b = along_and_across(polygon[(i + 1) % polygon.size()], axes);
+        if ((a.across_m <= offset_m) == (b.across_m <= offset_m)) continue;
+        const double part = (offset_m - a.across_m) / (b.across_m - a.across_m);
+        crossings.push_back(a.along_m + part * (b.along_m - a.along_m));
+    }
+    std::ranges::sort(crossings);
+    return crossings;
+}
+
+std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
                                      const Location& where) {
-    const auto along = direction(course_deg);
-    const auto across = direction(course_deg + 90.0);
-    const auto offset = [&](const LocalPosition& corner) { return scalar_product(corner, across); };
+    const auto offset = [&](const LocalPosition& corner) { return along_and_across(corner, course_deg).across_m; };
     const auto [left, right] = std::ranges::minmax(polygon, {}, offset);
     std::vector<SurveyLine> lines;
     const double first = offset(left) + spacing_m / 2.0;
     const double count = std::floor((offset(right) + 1e-6 - first) / spacing_m) + 1.0;
     for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0) {
         const double x = first + line * spacing_m;
-        std::vector<double> crossings;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const auto& a = polygon[i];
-            const auto& b = polygon[(i + 1) % polygon.size()];
-            const double xa = offset(a), xb = offset(b);
-            if ((xa <= x) == (xb <= x)) continue;
-            const double part = (x - xa) / (xb - xa);
-            crossings.push_back(scalar_product(a, along) +
-                                part * (scalar_product(b, along) - scalar_product(a, along)));
-        }
+        const auto crossings = line_crossings(polygon, course_deg, x);
         if (crossings.size() < 2) continue;
-        const auto [low, high] = std::ranges::minmax(crossings);
-        const auto place = [&](double y) {
-            return LocalPosition{x * across.east_m + y * along.east_m, x * across.north_m + y * along.north_m};
-        };
-        lines.push_back({place(low), place(high)});
+        lines.push_back({place_at({crossings.front(), x}, course_deg), place_at({crossings.back(), x}, course_deg)});
     }
     if (!lines.empty()) return lines;
     throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
+}
+
+double distance_between_m(const LocalPosition& a, const LocalPosition& b) {
+    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
 }
 
 double course_between(const LocalPosition& from, const LocalPosition& to) {
@@ -90,7 +105,7 @@ void PatternWriter::oval(const LocalPosition& first, const LocalPosition& second
 
 void PatternWriter::eight(const LocalPosition& centre, const LocalPosition& around, double radius_m) const {
     const double course_deg = course_between(centre, around);
-    const double offset_m = std::clamp(distance_m(centre, around), 1.0, 2.0 * std::abs(radius_m));
+    const double offset_m = std::clamp(distance_between_m(centre, around), 1.0, 2.0 * std::abs(radius_m));
     const auto fly_beside = [&](const LocalPosition& middle) { fly_to(moved(middle, radius_m, course_deg - 90.0)); };
     for (const double side : {1.0, -1.0}) {
         const auto middle = moved(centre, side * offset_m, course_deg);
@@ -133,28 +148,33 @@ void PatternWriter::zamboni(const Zamboni& survey) const {
     }
 }
 
-void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
+std::vector<SurveyLine> lines_in_order(std::vector<SurveyLine> lines, const LocalPosition& at) {
     const auto nearest_m = [&](const SurveyLine& line) {
-        return std::min(distance_m(at, line.from), distance_m(at, line.to));
+        return std::min(distance_between_m(at, line.from), distance_between_m(at, line.to));
     };
     if (nearest_m(lines.back()) < nearest_m(lines.front())) std::ranges::reverse(lines);
-    bool is_back = distance_m(at, lines.front().to) < distance_m(at, lines.front().from);
-    auto named = entries.size();  // the entries of a line and of the turn before it have its number
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        auto& [from, to] = lines[i];
+    bool is_back = distance_between_m(at, lines.front().to) < distance_between_m(at, lines.front().from);
+    for (auto& [from, to] : lines) {
         if (is_back) std::swap(from, to);
         is_back = !is_back;
-        if (i > 0) {
-            const auto& before = lines[i - 1];
-            const double course_deg = course_between(before.from, before.to);
-            const auto next = from - before.to;
-            const double ahead_m = scalar_product(next, direction(course_deg));
-            if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
-            const double side = scalar_product(next, direction(course_deg + 90.0)) > 0.0 ? 1.0 : -1.0;
-            turn(0.5, side * spacing_m / 2.0);
-        }
-        fly_to(from);
-        fly_to(to);
+    }
+    return lines;
+}
+
+void PatternWriter::turn_onto(const SurveyLine& before, const LocalPosition& next, double spacing_m) const {
+    const double course_deg = course_between(before.from, before.to);
+    const auto [ahead_m, right_m] = along_and_across(next - before.to, course_deg);
+    if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
+    turn(0.5, std::copysign(spacing_m / 2.0, right_m));
+}
+
+void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
+    lines = lines_in_order(std::move(lines), at);
+    auto named = entries.size();  // the entries of a line and of the turn before it have its number
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (i > 0) turn_onto(lines[i - 1], lines[i].from, spacing_m);
+        fly_to(lines[i].from);
+        fly_to(lines[i].to);
         for (; named < entries.size(); ++named) entries[named].name += fmt::format(" (line {})", i + 1);
     }
 }

@@ -15,11 +15,40 @@ struct SurveyLine {
     LocalPosition to;
 };
 
+/// Corners of a polygon, each once.
+using Polygon = std::vector<LocalPosition>;
+
+/// A position along a course from the origin, and across it to the right.
+struct CoursePosition {
+    double along_m = 0.0;
+    double across_m = 0.0;
+};
+
+/// The directions of a course and to its right, of length 1.
+struct CourseAxes {
+    LocalPosition along;
+    LocalPosition right;
+};
+
+CourseAxes axes_of(double course_deg);
+CoursePosition along_and_across(const LocalPosition& place, const CourseAxes& axes);
+CoursePosition along_and_across(const LocalPosition& place, double course_deg);
+LocalPosition place_at(const CoursePosition& position, double course_deg);
+
+/// Returns where a line crosses a polygon, by the distances along it, in their order: it has the course `course_deg` and
+/// passes the origin `offset_m` to its right.
+std::vector<double> line_crossings(const Polygon& polygon, double course_deg, double offset_m);
+
 /// Returns parallel lines over a polygon, all in the direction `course_deg`, from left to right. The first is half of
 /// the spacing within the polygon. In a concave polygon a line may cross the outside. Throws InputError at `where` if
 /// no line fits, or more than 5000.
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
                                      const Location& where);
+
+/// Returns the lines in alternating directions, beginning with the line and the end that are nearest to `at`.
+std::vector<SurveyLine> lines_in_order(std::vector<SurveyLine> lines, const LocalPosition& at);
+
+double distance_between_m(const LocalPosition& a, const LocalPosition& b);
 
 /// Returns the course [degrees] from one place to another.
 double course_between(const LocalPosition& from, const LocalPosition& to);
@@ -62,8 +91,11 @@ struct PatternWriter {
     /// Appends a Zamboni survey.
     void zamboni(const Zamboni& survey) const;
 
-    /// Appends the lines, in alternating directions, beginning with the line and the end that are nearest to `at`.
-    /// Before a turn the aircraft continues until the beginning of the next line is abeam.
+    /// Appends half a circle from the end of a line towards the beginning of the next one. Before it the aircraft
+    /// continues until that is abeam.
+    void turn_onto(const SurveyLine& before, const LocalPosition& next, double spacing_m) const;
+
+    /// Appends the lines as lines_in_order, with turns between them.
     void survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const;
 
     /// Appends the lines in the same direction: after each half a circle to the left, the way back, and a wider half

@@ -257,6 +257,7 @@ std::string missions_headline(const Findings& findings) {
 Json missions_json(const Findings& findings, LatexTables& tables) {
     const auto& missions = findings.missions;
     std::vector<mission::MissionSummary> summaries;
+    summaries.reserve(missions.size());
     for (const auto& simulated : missions) summaries.push_back(simulated.simulation.summary);
     const auto ranking = cli::ranked_missions(ranked(summaries));
     tables.add({table_of(ranking), "Missions by final state of charge", "tab:missions"});
