@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -148,6 +149,26 @@ void write_file_atomically(const std::filesystem::path& path, const TextWriter& 
         if (!replace(path, destination, write, folder)) fail(path, ENOENT);
     }
     mark_written(path);
+}
+
+void write_files_atomically(const std::map<std::filesystem::path, std::string>& files) {
+    std::vector<std::filesystem::path> unfinished;
+    try {
+        for (const auto& [path, content] : files) {
+            check_overwrite(path);
+            if (std::filesystem::is_directory(path)) fail(path, EISDIR);
+            unfinished.push_back(unfinished_name(path.parent_path()));
+            write_file_atomically(unfinished.back(), content);
+        }
+    } catch (...) {
+        for (const auto& path : unfinished) ::unlink(path.c_str());
+        throw;
+    }
+    auto next = unfinished.begin();
+    for (const auto& [path, content] : files) {
+        if (::rename((next++)->c_str(), path.c_str()) != 0) fail(path, errno);
+        mark_written(path);
+    }
 }
 
 void link_or_copy_file(const std::filesystem::path& source, const std::filesystem::path& path,

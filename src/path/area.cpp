@@ -5,7 +5,6 @@
 #include "path/plans/patterns.h"
 #include "path/waypoint_files.h"
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::path {
@@ -39,12 +38,9 @@ PlanEntries parse_area(std::string_view text, const std::string& file, double sp
     if (outline.has_holes) survey.not_flown.emplace_back("the holes of the area are flown over");
     PatternWriter{like, survey.entries}.survey(survey_lines(corners, spacing_m, heading_deg, {file}), spacing_m,
                                                corners.front());
-    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
     for (auto& entry : survey.entries) {
         if (!entry.place) continue;
-        double above_m = 0.0;
-        auto& place = entry.geographic.emplace();
-        plane.Reverse(entry.place->east_m, entry.place->north_m, 0.0, place.latitude_deg, place.longitude_deg, above_m);
+        entry.geographic = to_geodetic(*entry.place, origin);
         entry.place.reset();
     }
     return survey;
