@@ -152,22 +152,28 @@ void write_file_atomically(const std::filesystem::path& path, const TextWriter& 
 }
 
 void write_files_atomically(const std::map<std::filesystem::path, std::string>& files) {
-    std::vector<std::filesystem::path> unfinished;
+    struct Renaming {
+        std::filesystem::path unfinished;
+        std::filesystem::path file;
+    };
+    std::map<std::filesystem::path, Renaming> renamed;
     try {
         for (const auto& [path, content] : files) {
+            const auto destination = destination_of(path);
             check_overwrite(path);
-            if (std::filesystem::is_directory(path)) fail(path, EISDIR);
-            unfinished.push_back(unfinished_name(path.parent_path()));
-            write_file_atomically(unfinished.back(), content);
+            if (destination.is_special) fail(path, EEXIST);
+            if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
+            const auto& [unfinished, file] =
+                renamed[path] = {unfinished_name(destination.file.parent_path()), destination.file};
+            write_file_atomically(unfinished, content);
+        }
+        for (const auto& [path, names] : renamed) {
+            if (::rename(names.unfinished.c_str(), names.file.c_str()) != 0) fail(path, errno);
+            mark_written(path);
         }
     } catch (...) {
-        for (const auto& path : unfinished) ::unlink(path.c_str());
+        for (const auto& [path, names] : renamed) ::unlink(names.unfinished.c_str());
         throw;
-    }
-    auto next = unfinished.begin();
-    for (const auto& [path, content] : files) {
-        if (::rename((next++)->c_str(), path.c_str()) != 0) fail(path, errno);
-        mark_written(path);
     }
 }
 
