@@ -19,6 +19,7 @@
 #include "path/plan_files.h"
 #include "stages.h"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -145,7 +146,9 @@ int show_path(const cli::StageCall& call) {
     auto element = plan.path.elements.begin();
     for (const auto& leg : path_element_results(plan)) {
         end = end + path::local_position_at({{*element++}}, {1, 0.0});
-        auto place = std::pair(end.east_m, end.north_m);
+        constexpr double scale = 1e4;
+        const auto rounded = [](double metres) { return std::round(metres * scale) / scale + 0.0; };  // no -0
+        auto place = std::pair(rounded(end.east_m), rounded(end.north_m));
         if (plan.origin) {
             const auto where = to_geodetic(plan.origin->start + end, plan.origin->place);
             place = {where.latitude_deg, where.longitude_deg};
