@@ -3,9 +3,12 @@
 #include "compute/compute_model.h"
 #include "mission/schedule.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flightwatt::mission {
 
@@ -15,11 +18,21 @@ struct PlannedMissionText {
     bool lost_comments = false;  ///< true: the keys are sorted and have no comments
 };
 
+/// The flight with one pack of a mission with [packs], whose path is a plan of its own.
+struct PlannedPack {
+    std::size_t pack = 1;             ///< its number
+    std::string name;                 ///< of the mission
+    std::string plan_file;            ///< as the mission names it
+    std::vector<std::string> blocks;  ///< of a flight plan of Paparazzi
+};
+
 /// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]]; the
 /// rest is kept as written, with comments, if the notation permits. Lines end with \n. `compute` is the mission's.
-/// Names of files are relative to `folder`, in which the result is written.
+/// Names of files are relative to `folder`, in which the result is written. With `pack` it is the mission of that
+/// flight.
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
-                                        const std::filesystem::path& folder);
+                                        const std::filesystem::path& folder,
+                                        const std::optional<PlannedPack>& pack = std::nullopt);
 
 }  // namespace flightwatt::mission

@@ -8,7 +8,6 @@
 #include <regex>
 #include <vector>
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::path {
@@ -72,12 +71,9 @@ PlanEntries parse_area(std::string_view text, const std::string& file, double sp
     const SurveyedArea area{local(outlines.areas), local(outlines.closed)};
     if (!write_area_survey({like, survey.entries}, area, spacing_m, heading_deg))
         survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
-    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
     for (auto& entry : survey.entries) {
         if (!entry.place) continue;
-        double above_m = 0.0;
-        auto& place = entry.geographic.emplace();
-        plane.Reverse(entry.place->east_m, entry.place->north_m, 0.0, place.latitude_deg, place.longitude_deg, above_m);
+        entry.geographic = to_geodetic(*entry.place, origin);
         entry.place.reset();
     }
     return survey;

@@ -34,11 +34,6 @@ struct MissionItems {
     std::optional<PlannedSpeed> speed = {};
 };
 
-// MAV_CMD
-constexpr int nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18, nav_loiter_time = 19,
-              nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31, nav_spline = 82,
-              nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177, change_speed = 178;
-
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
                                          const Location& where) {
