@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,37 +23,59 @@ LocalPosition direction(double course_deg) { return moved({}, 1.0, course_deg); 
 
 }  // namespace
 
+LinedPolygon::LinedPolygon(const std::vector<LocalPosition>& polygon, double course_deg)
+    : polygon_(polygon), along_(direction(course_deg)), across_(direction(course_deg + 90.0)) {
+    const auto offset = [&](const LocalPosition& corner) { return right_of(corner); };
+    const auto [left, right] = std::ranges::minmax(polygon, {}, offset);
+    left_m_ = offset(left);
+    right_m_ = offset(right);
+}
+
+double LinedPolygon::right_of(const LocalPosition& place) const { return scalar_product(place, across_); }
+
+std::optional<SurveyLine> LinedPolygon::line_at(double x) const {
+    std::vector<double> crossings;
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+        const auto& a = polygon_[i];
+        const auto& b = polygon_[(i + 1) % polygon_.size()];
+        const double xa = right_of(a), xb = right_of(b);
+        if ((xa <= x) == (xb <= x)) continue;
+        const double part = (x - xa) / (xb - xa);
+        crossings.push_back(scalar_product(a, along_) + part * (scalar_product(b, along_) - scalar_product(a, along_)));
+    }
+    if (crossings.size() < 2) return std::nullopt;
+    const auto [low, high] = std::ranges::minmax(crossings);
+    const auto place = [&](double y) {
+        return LocalPosition{x * across_.east_m + y * along_.east_m, x * across_.north_m + y * along_.north_m};
+    };
+    return SurveyLine{place(low), place(high)};
+}
+
+std::vector<SurveyLine> LinedPolygon::lines_between(double left_m, double right_m, double spacing_m) const {
+    std::vector<SurveyLine> lines;
+    const double first = left_m + spacing_m / 2.0;
+    const double count = std::floor((right_m + 1e-6 - first) / spacing_m) + 1.0;
+    for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0)
+        if (const auto fits = line_at(first + line * spacing_m)) lines.push_back(*fits);
+    return lines;
+}
+
 std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
                                      const Location& where) {
-    const auto along = direction(course_deg);
-    const auto across = direction(course_deg + 90.0);
-    const auto offset = [&](const LocalPosition& corner) { return scalar_product(corner, across); };
-    const auto [left, right] = std::ranges::minmax(polygon, {}, offset);
-    std::vector<SurveyLine> lines;
-    const double first = offset(left) + spacing_m / 2.0;
-    const double count = std::floor((offset(right) + 1e-6 - first) / spacing_m) + 1.0;
-    for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0) {
-        const double x = first + line * spacing_m;
-        std::vector<double> crossings;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const auto& a = polygon[i];
-            const auto& b = polygon[(i + 1) % polygon.size()];
-            const double xa = offset(a), xb = offset(b);
-            if ((xa <= x) == (xb <= x)) continue;
-            const double part = (x - xa) / (xb - xa);
-            crossings.push_back(scalar_product(a, along) +
-                                part * (scalar_product(b, along) - scalar_product(a, along)));
-        }
-        if (crossings.size() < 2) continue;
-        const auto [low, high] = std::ranges::minmax(crossings);
-        const auto place = [&](double y) {
-            return LocalPosition{x * across.east_m + y * along.east_m, x * across.north_m + y * along.north_m};
-        };
-        lines.push_back({place(low), place(high)});
-    }
+    const LinedPolygon lined(polygon, course_deg);
+    auto lines = lined.lines_between(lined.left_m(), lined.right_m(), spacing_m);
     if (!lines.empty()) return lines;
     throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
 }
+
+bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at) {
+    const auto nearest_m = [&](const SurveyLine& line) {
+        return std::min(distance_m(at, line.from), distance_m(at, line.to));
+    };
+    return nearest_m(lines.back()) < nearest_m(lines.front());
+}
+
+double length_m(const SurveyLine& line) { return distance_m(line.from, line.to); }
 
 double course_between(const LocalPosition& from, const LocalPosition& to) {
     const auto way = to - from;
@@ -134,10 +157,12 @@ void PatternWriter::zamboni(const Zamboni& survey) const {
 }
 
 void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
-    const auto nearest_m = [&](const SurveyLine& line) {
-        return std::min(distance_m(at, line.from), distance_m(at, line.to));
-    };
-    if (nearest_m(lines.back()) < nearest_m(lines.front())) std::ranges::reverse(lines);
+    if (begins_with_last(lines, at)) std::ranges::reverse(lines);
+    lines_in_order(std::move(lines), spacing_m, at);
+}
+
+void PatternWriter::lines_in_order(std::vector<SurveyLine> lines, const std::optional<double>& spacing_m,
+                                   const LocalPosition& at) const {
     bool is_back = distance_m(at, lines.front().to) < distance_m(at, lines.front().from);
     auto named = entries.size();  // the entries of a line and of the turn before it have its number
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -150,12 +175,15 @@ void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, cons
             const auto next = from - before.to;
             const double ahead_m = scalar_product(next, direction(course_deg));
             if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
-            const double side = scalar_product(next, direction(course_deg + 90.0)) > 0.0 ? 1.0 : -1.0;
-            turn(0.5, side * spacing_m / 2.0);
+            const double aside_m = scalar_product(next, direction(course_deg + 90.0));
+            turn(0.5, std::copysign(spacing_m.value_or(std::abs(aside_m)), aside_m) / 2.0);
         }
         fly_to(from);
         fly_to(to);
-        for (; named < entries.size(); ++named) entries[named].name += fmt::format(" (line {})", i + 1);
+        for (; named < entries.size(); ++named) {
+            entries[named].name += fmt::format(" (line {})", i + 1);
+            entries[named].survey_line = i + 1;
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "path/path_entries.h"
 
+#include <optional>
 #include <vector>
 
 namespace flightwatt::path {
@@ -15,11 +16,39 @@ struct SurveyLine {
     LocalPosition to;
 };
 
+/// Lines over a polygon, all in one direction, from left to right. In a concave polygon a line may cross the outside.
+class LinedPolygon {
+  public:
+    LinedPolygon(const std::vector<LocalPosition>& polygon, double course_deg);
+
+    double left_m() const { return left_m_; }
+    double right_m() const { return right_m_; }
+    /// Returns the line at a distance to the right of the origin; std::nullopt outside of the polygon.
+    std::optional<SurveyLine> line_at(double right_m) const;
+    /// Returns the lines between two distances, the first one half of the spacing from the left one; none if there would
+    /// be more than 5000.
+    std::vector<SurveyLine> lines_between(double left_m, double right_m, double spacing_m) const;
+
+  private:
+    double right_of(const LocalPosition& place) const;
+
+    const std::vector<LocalPosition>& polygon_;
+    LocalPosition along_;
+    LocalPosition across_;
+    double left_m_ = 0.0;
+    double right_m_ = 0.0;
+};
+
 /// Returns parallel lines over a polygon, all in the direction `course_deg`, from left to right. The first is half of
-/// the spacing within the polygon. In a concave polygon a line may cross the outside. Throws InputError at `where` if
-/// no line fits, or more than 5000.
+/// the spacing within the polygon. Throws InputError at `where` if no line fits, or more than 5000.
 std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
                                      const Location& where);
+
+/// Returns whether the last line of a survey is nearer to a place than the first, and is flown first.
+bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at);
+
+/// Returns the length of a line [m].
+double length_m(const SurveyLine& line);
 
 /// Returns the course [degrees] from one place to another.
 double course_between(const LocalPosition& from, const LocalPosition& to);
@@ -63,8 +92,13 @@ struct PatternWriter {
     void zamboni(const Zamboni& survey) const;
 
     /// Appends the lines, in alternating directions, beginning with the line and the end that are nearest to `at`.
-    /// Before a turn the aircraft continues until the beginning of the next line is abeam.
     void survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const;
+
+    /// Appends the lines in this order, in alternating directions, beginning with the end that is nearest to `at`.
+    /// Before a turn the aircraft continues until the beginning of the next line is abeam. Without `spacing_m` each turn
+    /// is as wide as its lines are apart.
+    void lines_in_order(std::vector<SurveyLine> lines, const std::optional<double>& spacing_m,
+                        const LocalPosition& at) const;
 
     /// Appends the lines in the same direction: after each half a circle to the left, the way back, and a wider half
     /// circle.
