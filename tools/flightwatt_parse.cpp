@@ -10,6 +10,28 @@
 
 #include <fmt/format.h>
 
+namespace flightwatt::flight {
+
+Fields<EstimatedWind> record_fields(const EstimatedWind*) {
+    using R = EstimatedWind;
+    return {field("start_s", &R::start_s, "of the wind"),
+            field("end_s", &R::end_s, "of the wind"),
+            field("east_m_per_s", &R::east_m_per_s, "to the east"),
+            field("north_m_per_s", &R::north_m_per_s, "to the north"),
+            field("east_variance", &R::east_variance, "m^2/s^2"),
+            field("covariance", &R::covariance, "m^2/s^2"),
+            field("north_variance", &R::north_variance, "m^2/s^2")};
+}
+
+Fields<AirspeedEstimate> record_fields(const AirspeedEstimate*) {
+    using R = AirspeedEstimate;
+    return {field("winds", &R::winds, "winds that the ground velocity shows"),
+            field("sd_m_per_s", &R::sd_m_per_s, "error of the airspeed in means over 30 s"),
+            field("mean_sd_m_per_s", &R::mean_sd_m_per_s, "error of the airspeed in the mean of the flight")};
+}
+
+}  // namespace flightwatt::flight
+
 namespace {
 
 using namespace flightwatt;
@@ -40,6 +62,7 @@ Fields<ParseOutput> record_fields(const ParseOutput*) {
         field("end_s", &R::end_s, "last power sample"),
         field("median_interval_s", &R::median_interval_s, "between power samples"),
         field("sources", at(&R::loaded, sources), "message of each track"),
+        field("airspeed_estimate", at(&R::loaded, &L::data, &D::airspeed_estimate), "null: measured, or unknown"),
         field("warnings", at(&R::loaded, [](const L& loaded) { return texts_of(loaded.diagnostics); }), "warnings")};
 }
 

@@ -12,10 +12,15 @@
 #include "cli/stage.h"
 #include "flight/flown_path.h"
 #include "mission/mission_file.h"
+#include "mission/prepared_mission.h"
 #include "path/cruise_path.h"
+#include "path/path_entries.h"
 #include "path/plan_blocks.h"
 #include "path/plan_files.h"
 #include "stages.h"
+
+#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -60,6 +65,7 @@ struct PathOutput {
     double mechanical_energy_wh = 0.0;
     double mechanical_w = 0.0;
     std::optional<path::PathSpeed> speed;
+    std::optional<mission::FlownTrack> track;
 };
 
 Fields<PathOutput> record_fields(const PathOutput*) {
@@ -71,7 +77,10 @@ Fields<PathOutput> record_fields(const PathOutput*) {
             field("mechanical_w", &R::mechanical_w, "mean power of the cruise"),
             field("best_speed", at(&R::speed, &path::PathSpeed::best),
                   "one airspeed with the least energy; null: the model has no induced drag"),
-            field("planned_energy_wh", at(&R::speed, &path::PathSpeed::planned_wh), "as planned, by the same model")};
+            field("planned_energy_wh", at(&R::speed, &path::PathSpeed::planned_wh), "as planned, by the same model"),
+            field("track", &R::track,
+                  "as it is flown, with its turns and the charge along it; null: a mission with [packs], whose flights "
+                  "have their own in plan and simulate")};
 }
 
 /// JSON of --path-from.
@@ -107,6 +116,18 @@ int list_plan(const cli::StageCall& call, std::string_view text, std::optional<d
     return cli::ok;
 }
 
+/// The track with the charge; without it where the schedule cannot be planned.
+std::optional<mission::FlownTrack> track_of(const mission::MissionVariant& mission) {
+    const auto& setup = setup_of(mission);
+    if (setup.packs) return std::nullopt;
+    mission::Simulation simulation;
+    try {
+        simulation = simulate_prepared(prepare_mission(mission)).simulation;
+    } catch (const InputError&) {  // it has no utilities, or charges its battery
+    }
+    return flown_track(setup, simulation);
+}
+
 int show_path(const cli::StageCall& call) {
     const auto mission = mission::read_mission(call.inputs.front(), {.allow_unplanned = true});
     const auto& setup = setup_of(mission);
@@ -115,23 +136,35 @@ int show_path(const cli::StageCall& call) {
                          "add one (docs/missions.md, path); --path-from makes one from a log");
     }
     cli::warn_of_setup(call, setup);
+    const auto& plan = *setup.cruise_path->plan;
     CsvWriter csv({"leg", "kind", "start_s", "duration_s", "length_m", "course_deg", "airspeed_m_per_s",
-                   "climb_m_per_s", "load_factor", "mechanical_w"},
+                   "climb_m_per_s", "load_factor", "mechanical_w", plan.origin ? "end_latitude_deg" : "end_east_m",
+                   plan.origin ? "end_longitude_deg" : "end_north_m"},
                   digits);
     double length_m = 0.0;
-    for (const auto& leg : path_element_results(*setup.cruise_path->plan)) {
+    path::LocalPosition end;
+    auto element = plan.path.elements.begin();
+    for (const auto& leg : path_element_results(plan)) {
+        end = end + path::local_position_at({{*element++}}, {1, 0.0});
+        constexpr double scale = 1e4;
+        const auto rounded = [](double metres) { return std::round(metres * scale) / scale + 0.0; };  // no -0
+        auto place = std::pair(rounded(end.east_m), rounded(end.north_m));
+        if (plan.origin) {
+            const auto where = to_geodetic(plan.origin->start + end, plan.origin->place);
+            place = {where.latitude_deg, where.longitude_deg};
+        }
         csv.add(leg.name, leg.kind, leg.start_s, leg.duration_s, leg.length_m, leg.course_deg, leg.airspeed_m_per_s,
-                leg.climb_m_per_s, leg.load_factor, leg.mechanical_w);
+                leg.climb_m_per_s, leg.load_factor, leg.mechanical_w, place.first, place.second);
         length_m += leg.length_m.value_or(0.0);
     }
     write_csv_result(call, csv.text(), {setup.name, {"leg", "start_s", "duration_s", "length_m", "mechanical_w"}});
     const double duration_s = path::duration_s(*setup.cruise_path);
     const double energy_wh = units::wh_from_joule(energy_j(*setup.cruise_path));
     const double mean_w = mean_power_w(*setup.cruise_path);
-    const auto& plan = *setup.cruise_path->plan;
     const auto speed = best_path_speed(plan);
     if (call.json) {
-        cli::print_json(call, PathOutput{setup.name, length_m, duration_s, energy_wh, mean_w, speed});
+        cli::print_json(call,
+                        PathOutput{setup.name, length_m, duration_s, energy_wh, mean_w, speed, track_of(mission)});
     } else {
         cli::note(call, fmt::format("{}: {:.2f} km over ground in {}; {:.3f} Wh, {:.2f} W on average", setup.name,
                                     length_m / 1000.0, duration_text(duration_s), energy_wh, mean_w));
@@ -200,7 +233,8 @@ int flightwatt::stages::path_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "path", "[MISSION.toml|PLAN]",
         R"(Shows how the cruise of a mission with a [path] is flown, an element a row: leg, kind, start_s, duration_s,
-length_m, course_deg, airspeed_m_per_s, climb_m_per_s, load_factor, mechanical_w.
+length_m, course_deg, airspeed_m_per_s, climb_m_per_s, load_factor, mechanical_w, and where it ends:
+end_latitude_deg and end_longitude_deg, or end_east_m and end_north_m from the start of a path in metres.
 Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of ArduPilot) the blocks: what of each
 a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in

@@ -12,11 +12,14 @@
 #include "mission/mission_read_options.h"
 #include "mission/plan.h"
 #include "mission/planned_mission_toml.h"
+#include "path/plan_writer.h"
 #include "stages.h"
 
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -77,6 +80,8 @@ struct PlanArguments {
     std::optional<double> probability;
     bool longest_cruise = false;
     bool spare_power = false;
+    bool packs = false;
+    std::optional<path::PlanFormat> format;  ///< of the files of packs
 };
 
 std::string describe(const mission::MissionPlan& plan, const mission::MissionSetup& mission) {
@@ -119,14 +124,67 @@ void note_sources(const cli::StageCall& call, const PlanArguments& arguments, co
     throw NoResultError(fmt::format("{}: {}", problem.setup.name, describe(problem.setup, report)));
 }
 
+/// The format of the files of packs: as asked, or that of the mission's plan, or a .plan.
+path::PlanFormat format_of_packs(const PlanArguments& arguments, const path::PlannedPath& plan) {
+    if (arguments.format) return *arguments.format;
+    const std::filesystem::path source = drawn_path(plan).elements.front().where.file;
+    if (source.extension() == ".toml" || source.extension() == ".kml") return path::PlanFormat::qgroundcontrol;
+    const auto format = path::plan_format(read_file(source));
+    return format == path::PlanFormat::none ? path::PlanFormat::qgroundcontrol : format;
+}
+
+/// Writes for each pack the plan of its flight, the mission that flies it, and its results with the schedule.
+void write_packs(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file,
+                 const mission::PackFlights& all) {
+    const std::filesystem::path folder = *call.output;
+    std::map<std::filesystem::path, std::string> files;
+    std::set<std::string> notes;
+    const auto format = format_of_packs(arguments, *all.setup.cruise_path->plan);
+    for (const auto& flight : all.flights) {
+        const auto& setup = setup_of(flight.mission);
+        const auto& plan = *setup.cruise_path->plan;
+        const auto name = fmt::format("pack-{}", flight.pack);
+        const auto plan_name = name + path::plan_ending(format);
+        auto written =
+            write_plan({setup.name, drawn_path(plan), *plan.origin, setup.mechanical->is_rotorcraft}, format);
+        notes.insert(written.notes.begin(), written.notes.end());
+        files[folder / plan_name] = std::move(written.text);
+        mission::PlannedPack pack{flight.pack, setup.name, plan_name, {}};
+        if (format == path::PlanFormat::flight_plan) pack.blocks = {path::written_block};
+        files[folder / (name + ".toml")] =
+            fmt::format("# {}\n", one_line(describe(flight.flown.simulation.summary))) +
+            planned_mission_toml(file.text, file.path, setup.compute, flight.flown.schedule, folder, {}, pack).text;
+        files[folder / (name + ".json")] = cli::json_text(cli::json_document(call, record_json(flight)));
+    }
+    make_directories(folder);
+    write_files_atomically(files);
+    for (const auto& text : notes) cli::note(call, fmt::format("{}: {}", all.setup.name, text));
+}
+
+int plan_packs(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file,
+               const mission::MissionVariant& mission) {
+    const auto& setup = setup_of(mission);
+    if (arguments.packs && (!setup.cruise_path || !setup.cruise_path->plan->origin))
+        throw InputError({setup.file},
+                         setup.cruise_path ? "the path is in metres, and no plan: where it is on the earth is unknown"
+                                           : "the mission has no [path]: there is no plan of its flights",
+                         "give latitude_deg and longitude_deg, in start of [path] or of its legs; without --packs the "
+                         "flights are printed");
+    cli::warn_of_setup(call, setup);
+    const auto all = fly_packs(mission, {}, arguments.probability);
+    if (arguments.packs && all.suffice) write_packs(call, arguments, file, all);
+    auto printed = call;
+    if (arguments.packs) printed.output.reset();
+    print_packs(printed, all, csv_of(all.flights), {all.setup.name, {"mission", "cruise_to_s", "final_soc_percent"}});
+    return cli::ok;
+}
+
 int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
     const auto mission = file.read();
-    if (setup_of(mission).packs && !arguments.probability) {
-        cli::warn_of_setup(call, setup_of(mission));
-        const auto all = fly_packs(mission);
-        print_packs(call, all, csv_of(all.flights), {all.setup.name, {"mission", "cruise_to_s", "final_soc_percent"}});
-        return cli::ok;
-    }
+    if (setup_of(mission).packs) return plan_packs(call, arguments, file, mission);
+    if (arguments.packs)
+        throw InputError({setup_of(mission).file}, "the mission has no [packs]",
+                         "add [packs] with count, change_s and home");
     const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
     if (problem == nullptr) {
         if (setup_of(mission).compute.components.empty())
@@ -235,15 +293,19 @@ of any other. The result is the mission with that schedule, for simulate and com
 [[schedule]] next to [plan] are fixed. --longest-cruise and --spare-power take the mission's own schedule, or the
 one that demands least energy. On a battery whose voltage falls with its charge (model = "thevenin"), or with a
 cut-off voltage, the battery is simulated for each candidate schedule. A mission with [packs] is divided into flights,
-and the result is a table of them (CSV); their schedules are in --json.)"};
+and the result is a table of them (CSV); their schedules are in --json. With --packs -o FOLDER each flight has its own
+files there: pack-1.plan for the ground station, pack-1.toml (the mission that flies it, with its schedule, for
+simulate) and pack-1.json (its results and its schedule).)"};
     stage.max_inputs = 1;
     stage.next = [](const auto& call) {
         const bool is_table = std::filesystem::path(*call.output).extension() == ".csv";  // of a mission with [packs]
+        if (call.has("packs")) return "flightwatt simulate {}/pack-1.toml";
         return is_table || call.has("longest-cruise") || call.has("spare-power") ? "" : "flightwatt simulate {}";
     };
     stage.json_schema = cli::document_schema<cli::PlanOutput, PlanLimit, mission::PackFlights>;
     stage.examples = {"flightwatt plan mission.toml -o planned.toml",
-                      "flightwatt plan mission.toml --longest-cruise --probability 0.95"};
+                      "flightwatt plan mission.toml --longest-cruise --probability 0.95",
+                      "flightwatt plan mission.toml --packs --probability 0.95 -o flights"};
     stage.uses_threads = true;
     PlanArguments arguments;
     auto& options = stage.options;
@@ -258,5 +320,15 @@ and the result is a table of them (CSV); their schedules are in --json.)"};
     options.add("spare-power", arguments.spare_power,
                 "instead: the largest constant power that may be drawn in addition, as by a camera [W]",
                 {.old_name = "largest-payload"});
+    options.add("packs", arguments.packs, "write the files of each flight of a mission with [packs] to the folder -o",
+                {.needs = {"output"}, .excludes = {"longest-cruise", "spare-power"}});
+    options.add_choice<std::optional<path::PlanFormat>>(
+        "format", arguments.format,
+        {{"plan", path::PlanFormat::qgroundcontrol},
+         {"waypoints", path::PlanFormat::ardupilot},
+         {"blocks", path::PlanFormat::flight_plan}},
+        {.needs = {"packs"}},
+        "of these: .plan of QGroundControl, .waypoints of ArduPilot, or a flight plan of Paparazzi with a block; "
+        "default: that of the mission's plan, else plan");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return plan_file(call, arguments); });
 }

@@ -37,7 +37,7 @@ std::string flights_text(std::size_t flights) {
 
 /// What a power rests on: the flights' own mean, or the physical model or an assumption that changes it.
 std::string power_basis(const KnownAircraft& aircraft, const Question& question) {
-    const auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
+    auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
     if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
     auto basis = "physics, from power and motion " + measured;
     if (!aircraft.model.is_rotorcraft) return basis;
@@ -64,7 +64,9 @@ Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question
     if (const auto asked = mission_airspeed_m_per_s(aircraft, question)) return known(*asked, "as asked");
     const auto& physical = aircraft.model.physical;
     if (!aircraft.model.is_rotorcraft && physical && physical->mean_airspeed_m_per_s > 0.0)
-        return known(physical->mean_airspeed_m_per_s, "measured in cruise");
+        return known(physical->mean_airspeed_m_per_s, physical->airspeed_sd_m_per_s
+                                                          ? "estimated of the cruise, from the ground velocity"
+                                                          : "measured in cruise");
     if (const auto ground = mean_ground_speed_m_per_s(aircraft.flights))
         return known(*ground, "assumed: the ground speed of the flights, as in calm air");
     return unknown("the logs have neither airspeed nor position; a flight with GPS shows it");

@@ -256,6 +256,7 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
     trend.last_day = days.back();
     const double middle_day = median(days);
     std::vector<double> levels;
+    levels.reserve(values.size());
     for (const auto& [day, value] : values) levels.push_back(value - slope.per_day * (day - middle_day));
     const double level = median(std::move(levels));
     const auto change = [&](double per_day) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -148,6 +149,32 @@ void write_file_atomically(const std::filesystem::path& path, const TextWriter& 
         if (!replace(path, destination, write, folder)) fail(path, ENOENT);
     }
     mark_written(path);
+}
+
+void write_files_atomically(const std::map<std::filesystem::path, std::string>& files) {
+    struct Renaming {
+        std::filesystem::path unfinished;
+        std::filesystem::path file;
+    };
+    std::map<std::filesystem::path, Renaming> renamed;
+    try {
+        for (const auto& [path, content] : files) {
+            const auto destination = destination_of(path);
+            check_overwrite(path);
+            if (destination.is_special) fail(path, EEXIST);
+            if (destination.before && ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
+            const auto& [unfinished, file] =
+                renamed[path] = {unfinished_name(destination.file.parent_path()), destination.file};
+            write_file_atomically(unfinished, content);
+        }
+        for (const auto& [path, names] : renamed) {
+            if (::rename(names.unfinished.c_str(), names.file.c_str()) != 0) fail(path, errno);
+            mark_written(path);
+        }
+    } catch (...) {
+        for (const auto& [path, names] : renamed) ::unlink(names.unfinished.c_str());
+        throw;
+    }
 }
 
 void link_or_copy_file(const std::filesystem::path& source, const std::filesystem::path& path,

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 
 namespace flightwatt {
@@ -23,6 +25,9 @@ using TextWriter = std::function<void(const TextSink&)>;
 /// The same for a text in chunks. `write` may be called twice.
 void write_file_atomically(const std::filesystem::path& path, const TextWriter& write,
                            const std::filesystem::path& temporary_folder = {});
+
+/// Writes all files, in folders that exist, or leaves them as they are. Throws as above.
+void write_files_atomically(const std::map<std::filesystem::path, std::string>& files);
 
 /// Gives the file `path` the content of `source`: as a second name of it (a hard link), or, where the file systems
 /// cannot, as a copy. As atomically; what was at `path` is replaced. For files that are only ever replaced as a whole.

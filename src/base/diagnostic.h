@@ -21,8 +21,8 @@ struct Diagnostic {
     Severity severity = Severity::warning;
     std::string kind = {};  ///< a few stable words, the heading of its group: "gaps in the power"; empty: no group
     std::string text = {};
-    std::string flight = {};  ///< empty: of no flight
-    auto operator<=>(const Diagnostic&) const = default;
+    std::string flight = {};                              ///< empty: of no flight
+    auto operator<=>(const Diagnostic&) const = default;  // NOLINT(modernize-use-nullptr): it takes the 0 of "< 0"
 };
 using Diagnostics = std::vector<Diagnostic>;
 

@@ -93,6 +93,8 @@ Fields<BinnedFlight> record_fields(const BinnedFlight*) {
                     r.load.payload_kg = json.at(0).get<double>();
                     if (json.at(1).get<double>() > 0.0) r.load.rotors = {json.at(1), json.at(2)};
                 }),
+            field("airspeed_sd_m_per_s", &R::airspeed_sd_m_per_s),
+            field("mean_airspeed_sd_m_per_s", &R::mean_airspeed_sd_m_per_s),
             field("bins", &R::bins)};
 }
 

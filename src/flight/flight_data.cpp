@@ -90,7 +90,10 @@ Diagnostics selection_diagnostics(const FlightData& data) {
     for (const auto& [name, member] : track_members()) {
         const bool moves_phases = member == &FlightData::altitude_m || member == &FlightData::throttle_percent;
         if (member != &FlightData::power_w)
-            add(moves_phases ? warning : note, moves_phases ? "corrected altitude or throttle" : "corrected tracks",
+            add(moves_phases ? warning : note,
+                moves_phases                                                        ? "corrected altitude or throttle"
+                : member == &FlightData::airspeed_m_per_s && data.airspeed_estimate ? "estimated airspeed"
+                                                                                    : "corrected tracks",
                 (data.*member).notes);
     }
     for (const auto& skip : data.skipped)

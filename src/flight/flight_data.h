@@ -21,6 +21,24 @@ struct ChosenTrack : Track {
     std::vector<std::string> not_chosen = {};  ///< sources that were rejected, with the reason
 };
 
+/// A wind over a time, as the ground velocity shows it, with the covariance of its parts [m^2/s^2].
+struct EstimatedWind {
+    double start_s = 0.0;  ///< the log's own seconds
+    double end_s = 0.0;
+    double east_m_per_s = 0.0;
+    double north_m_per_s = 0.0;
+    double east_variance = 0.0;
+    double covariance = 0.0;
+    double north_variance = 0.0;
+};
+
+/// How an airspeed was estimated that no sensor measured, and its standard deviations.
+struct AirspeedEstimate {
+    std::vector<EstimatedWind> winds;  ///< one after the other
+    double sd_m_per_s = 0.0;           ///< of means over 30 s
+    double mean_sd_m_per_s = 0.0;      ///< of the mean of the flight
+};
+
 /// Battery packs at one voltage, and the tracks of their sum.
 struct Circuit {
     std::string name;  ///< its battery monitors: "BAT 0 and BAT 1"
@@ -71,6 +89,9 @@ struct FlightData : FlightInfo {
     ChosenTrack ground_altitude_m;
     ChosenTrack payload_kg;
 
+    /// Of an airspeed that was estimated (select/airspeed.h); absent if it was measured, or is unknown.
+    std::optional<AirspeedEstimate> airspeed_estimate;
+
     std::optional<double> stated_capacity_ah;  ///< of the packs of the first circuit, by the log's parameters
 
     std::vector<Circuit> circuits;  ///< those of a log that numbers its batteries, the one with the most energy first
@@ -78,6 +99,7 @@ struct FlightData : FlightInfo {
     double last_s = -std::numeric_limits<double>::infinity();  ///< see last_time_s()
 
     bool is_rotorcraft() const { return firmware == "rotorcraft"; }
+    bool airspeed_is_measured() const { return !airspeed_m_per_s.empty() && !airspeed_estimate; }
 };
 
 /// A quantity, and the member of FlightData that has it.

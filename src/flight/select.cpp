@@ -1,5 +1,6 @@
 #include "flight/select.h"
 
+#include "flight/select/airspeed.h"
 #include "flight/select/candidates.h"
 #include "flight/select/circuits.h"
 #include "flight/select/device_check.h"
@@ -128,6 +129,7 @@ FlightData select_tracks(const FlightSeries& series) {
     data.ground_speed_m_per_s = first_of(series, "ground_speed_m_per_s");
     if (is_constant(data.airspeed_m_per_s))  // there is no sensor
         data.airspeed_m_per_s = {{}, std::move(data.airspeed_m_per_s.notes)};
+    estimate_airspeed(data);
     return data;
 }
 

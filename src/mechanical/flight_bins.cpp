@@ -8,6 +8,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 namespace flightwatt::mechanical {
 namespace {
 
@@ -101,7 +103,9 @@ std::string no_bins_reason(const flight::FlightData& data) {
     if (data.altitude_m.empty()) return "its altitude was not measured";
     if (!speed_of(data).empty()) return "";
     if (firmware == "rotorcraft") return "neither airspeed nor ground speed was measured";
-    return "its airspeed was not measured; ground speed cannot replace it, as wind changes its cube";
+    const auto& unknown = data.airspeed_m_per_s.not_chosen;
+    return fmt::format("its airspeed was not measured{}; ground speed cannot replace it, as wind changes its cube",
+                       unknown.empty() ? "" : " and cannot be estimated (" + unknown.front() + ")");
 }
 
 }  // namespace
@@ -122,6 +126,10 @@ BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight
     motion.load.payload_kg = payload_kg.value_or(0.0);
     const auto mass_kg = first_value(data.mass_kg);
     const auto area_m2 = first_value(data.rotor_area_m2);
+    if (const auto& estimate = data.airspeed_estimate) {
+        motion.airspeed_sd_m_per_s = estimate->sd_m_per_s;
+        motion.mean_airspeed_sd_m_per_s = estimate->mean_sd_m_per_s;
+    }
     if (motion.is_rotorcraft && mass_kg && area_m2) motion.load.rotors = {*mass_kg, *area_m2};
     MotionTracks of{data.power_w, speed_of(data), data.altitude_m, data.roll_deg, motion};
     std::vector<double> speeds;
@@ -147,6 +155,16 @@ BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight
     if (motion.bins.empty())
         motion.no_bins_reason = "power, airspeed and altitude were never measured at the same time";
     return motion;
+}
+
+TermValues airspeed_slopes(const FlightBin& bin) {
+    const double by_speed = bin.values[PowerTerm::induced];
+    TermValues slopes;
+    slopes[PowerTerm::drag] = 3.0 * bin.values[PowerTerm::blade];
+    slopes[PowerTerm::blade] = 2.0 * bin.airspeed_m_per_s;
+    slopes[PowerTerm::induced] = -by_speed * by_speed;
+    slopes[PowerTerm::turn] = -bin.values[PowerTerm::turn] * by_speed;
+    return slopes;
 }
 
 TermValues mean_values(const std::vector<FlightBin>& bins) {

@@ -35,6 +35,8 @@ struct BinnedFlight {
     bool is_rotorcraft = false;
     bool payload_known = false;  ///< of the load; stated, as the rotors, by the log or its column map
     AircraftLoad load = {};
+    double airspeed_sd_m_per_s = 0.0;       ///< error of a bin's mean airspeed; 0 if it was measured
+    double mean_airspeed_sd_m_per_s = 0.0;  ///< of the flight's mean airspeed
 };
 
 /// Each span in equal bins of about `bin_s`. A bin counts where power, airspeed (of a rotorcraft without one, ground
@@ -50,6 +52,9 @@ BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight
 
 /// The spans of a sortie: its phases.
 std::vector<flight::PhaseSegment> phase_spans(const flight::Sortie& sortie);
+
+/// The derivatives of a bin's terms by its airspeed, with the climb as it is.
+TermValues airspeed_slopes(const FlightBin& bin);
 
 /// Means of the bins' terms, each weighing as long as it is. Of no bins zeros.
 TermValues mean_values(const std::vector<FlightBin>& bins);

@@ -13,6 +13,7 @@ namespace flightwatt::mechanical {
 namespace {
 
 constexpr double max_edge_gap = 0.25;  // of the phase
+constexpr double short_bin_s = 10.0;   // of wings that do not fly for min_bins of default_bin_s
 
 /// Reason to exclude a phase, whatever its samples; empty without one.
 std::string exclusion_reason(const flight::PhaseSpan& span) {
@@ -111,6 +112,8 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
         }
         if (!has_any_phase(flight)) continue;
         flight.motion = bin_flight(data, phase_spans(sortie));
+        if (!flight.motion.is_rotorcraft && flight.motion.bins.size() < min_bins)
+            flight.motion = bin_flight(data, phase_spans(sortie), short_bin_s);
         flight.motion.flight = flight.samples.flight;
         measured.flights.push_back(std::move(flight));
         measured.sorties.push_back(sortie.number - 1);

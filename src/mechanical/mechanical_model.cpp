@@ -239,6 +239,7 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.real("mean_airspeed_m_per_s", model.mean_airspeed_m_per_s, at_least(0.0));
     fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, at_least(0.0));
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
+    fields.optional_real("airspeed_sd_m_per_s", model.airspeed_sd_m_per_s, at_least(0.0));
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
     fields.optional_table("payload_kg", model.payload_kg, [&](TomlFields& payload, FlownRange& range) {
         payload.real("mean", model.load.payload_kg, at_least(0.0));

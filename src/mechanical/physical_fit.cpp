@@ -119,6 +119,59 @@ double drift_degrees_of_freedom(const PhysicalModel& model, const std::vector<do
     return std::clamp(2.0 / std::max(relative - by_chance, 2.0 / max), std::min(flights - 1.0, max), max);
 }
 
+/// What errors of estimated airspeeds add to the covariance of the coefficients, by their changes in the likeliest fit:
+/// with the airspeeds of a flight shifted by their common error, and with as much noise again in the bins, which
+/// flattens slopes (Fuller, Measurement Error Models, 1987).
+ColumnMatrix airspeed_covariance(std::span<const BinnedFlight> flights, const std::vector<int>& columns,
+                                 const VarianceGridPoint& node) {
+    std::vector<NormalEquations> sums;
+    for (const auto& flight : flights) sums.push_back(accumulate_normal_equations(flight.bins, node.correlation_s));
+    const auto fit = fit_gls(sums, columns, node.level_sd);
+    ColumnMatrix covariance = ColumnMatrix::Zero(std::ssize(columns), std::ssize(columns));
+    const auto add_change = [&](const std::vector<NormalEquations>& changed) {
+        const auto other = fit_gls(changed, columns, node.level_sd);
+        if (!fit || !other) return;
+        const ColumnVector change = other->coefficients - fit->coefficients;
+        covariance += change * change.transpose();
+    };
+    auto noisy = sums;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        if (flights[i].airspeed_sd_m_per_s == 0.0) continue;
+        auto shifted_bins = flights[i].bins;
+        for (auto& bin : shifted_bins) {
+            const auto slopes = airspeed_slopes(bin);
+            const double correlation = std::exp(-bin.duration_s / node.correlation_s);
+            const double of_difference =  // from the bin before, in accumulate_normal_equations()
+                (1.0 + correlation * correlation) / (1.0 - correlation * correlation);
+            const double noise =
+                weight_of_bin(bin.duration_s) * std::pow(flights[i].airspeed_sd_m_per_s, 2) * of_difference;
+            noisy[i].products += noise * as_columns(slopes) * as_columns(slopes).transpose();
+            for (const auto term : all_power_terms)
+                bin.values[term] += flights[i].mean_airspeed_sd_m_per_s * slopes[term];
+        }
+        auto shifted = sums;
+        shifted[i] = accumulate_normal_equations(shifted_bins, node.correlation_s);
+        add_change(shifted);
+    }
+    add_change(noisy);
+    return covariance;
+}
+
+void add_airspeed_errors(std::span<const BinnedFlight> flights, const VarianceGridPoint& node, PhysicalModel& model) {
+    double square = 0.0;
+    double estimated = 0.0;
+    for (const auto& flight : flights) {
+        square += flight.airspeed_sd_m_per_s * flight.airspeed_sd_m_per_s;
+        estimated += flight.airspeed_sd_m_per_s > 0.0 ? 1.0 : 0.0;
+    }
+    if (estimated == 0.0) return;
+    model.airspeed_sd_m_per_s = std::sqrt(square / estimated);
+    const auto added = airspeed_covariance(flights, columns_of(model.terms), node);
+    for (std::size_t i = 0; i < model.terms.size(); ++i)
+        for (std::size_t j = 0; j < model.terms.size(); ++j)
+            model.covariance[i][j] += added(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+}
+
 PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegression& regression,
                         const std::vector<PowerTerm>& terms) {
     PhysicalModel model;
@@ -128,6 +181,7 @@ PhysicalModel fit_terms(std::span<const BinnedFlight> flights, const PowerRegres
     const auto posterior = regression.posterior(columns_of(model.terms));
     if (!posterior) throw NoResultError("the flights' motion varies too little to determine a power model");
     summarise(model, *posterior, typical_values(flights));
+    add_airspeed_errors(flights, posterior->nodes[posterior->likeliest], model);
     model.drift_degrees_of_freedom = drift_degrees_of_freedom(model, posterior->drift_variances_w2);
     return model;
 }
@@ -169,7 +223,6 @@ PhysicalFit fit_physical_model(std::span<const BinnedFlight> flights) {
         for (const auto& [flight, reason] : fit.skipped) reasons += fmt::format("; {}: {}", flight, reason);
         throw NoResultError("no flight has power and motion to fit" + reasons);
     }
-    constexpr std::size_t min_bins = 10;
     if (bins < min_bins) {
         throw NoResultError(
             fmt::format("{} intervals of {:.0f} s with power, airspeed and altitude: a physical model "

@@ -114,6 +114,8 @@ struct PhysicalModel {
     std::vector<std::string> flights;
 
     FlownRange airspeed_m_per_s;  ///< of the bins' means
+    /// Error of these means (1 sd) in flights without an airspeed sensor; absent if all measured it.
+    std::optional<double> airspeed_sd_m_per_s = {};
     FlownRange climb_m_per_s;
     /// Of which power is predicted; after a fit with the mean payload of its flights.
     AircraftLoad load = {};
@@ -161,6 +163,9 @@ double variance_of_mean_w2(const DriftProcess& drift, double duration_s);
 
 /// Length of a bin: longer than gusts and the exchange of height and speed, shorter than manoeuvres.
 inline constexpr double default_bin_s = 30.0;
+
+/// A physical model needs as many bins.
+inline constexpr std::size_t min_bins = 10;
 
 /// Shorter bins weigh in proportion, as gusts and manoeuvres do not average out over them.
 inline double weight_of_bin(double duration_s) { return std::min(1.0, duration_s / default_bin_s); }

@@ -156,7 +156,7 @@ std::string to_latex(const TextTable& table, std::string_view label) {
             heading.clear();
             continue;
         }
-        notes = fmt::format("; no interval of the {}: {}", heading.substr(0, heading.find(' ')), reason) + notes;
+        notes.insert(0, fmt::format("; no interval of the {}: {}", heading.substr(0, heading.find(' ')), reason));
         const auto at = static_cast<std::ptrdiff_t>(column);
         cells.header.erase(cells.header.begin() + at);
         for (auto& row : cells.rows) row.erase(row.begin() + at);

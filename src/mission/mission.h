@@ -45,6 +45,9 @@ struct Uncertainty {
     double initial_soc_sd_percent = 0.0;                    ///< of the charge at the start [points]
 };
 
+/// Name of the leg by which a flight with one of several packs leaves the path.
+inline constexpr auto way_home = "way home";
+
 /// Packs that are changed on the ground: the mission is as many flights as it needs (packs.h).
 struct Packs {
     std::size_t count = 1;

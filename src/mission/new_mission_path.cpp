@@ -79,7 +79,7 @@ std::string start_key(const path::GeodeticPosition& home, std::string_view fligh
     if (flight_plan.empty())
         return fmt::format("start = {{ latitude_deg = {}, longitude_deg = {} }}", home.latitude_deg,
                            home.longitude_deg);
-    const auto [east_m, north_m] = path::to_local(home, path::flight_plan_origin(flight_plan, file));
+    const auto [east_m, north_m] = path::to_local(home, path::flight_plan_origin(flight_plan, file).first);
     return fmt::format("start = {{ east_m = {:.2f}, north_m = {:.2f} }}", east_m, north_m);
 }
 

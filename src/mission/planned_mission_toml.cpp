@@ -146,14 +146,36 @@ std::string run_text(const compute::ComputeModel& compute, const compute::Config
     return toml_inline_table(components);
 }
 
-std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule) {
+/// The entries of a schedule; with `open_ends` the last of a phase is until its end, whenever that is.
+std::string schedule_text(const compute::ComputeModel& compute, const Schedule& schedule, bool open_ends) {
     std::string text;
-    for (const auto& segment : schedule) {
-        text += fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\nto = {}\nrun = {}\n",
-                            toml_string(to_string(segment.phase)), toml_real(segment.start_s), toml_real(segment.end_s),
-                            run_text(compute, segment.run));
+    for (std::size_t i = 0; i < schedule.size(); ++i) {
+        const auto& segment = schedule[i];
+        const bool is_last = i + 1 == schedule.size() || schedule[i + 1].phase != segment.phase;
+        const auto to = open_ends && is_last ? "" : fmt::format("to = {}\n", toml_real(segment.end_s));
+        text +=
+            fmt::format("\n[[schedule]]\nphase = {}\nfrom = {}\n{}run = {}\n", toml_string(to_string(segment.phase)),
+                        toml_real(segment.start_s), to, run_text(compute, segment.run));
     }
     return text;
+}
+
+/// Makes a mission with [packs] that of one flight: its pack, and its plan instead of the path. Of the path's keys those
+/// remain by which a plan is flown.
+void choose_pack(toml::table& root, const PlannedPack& pack) {
+    root.insert_or_assign("name", pack.name);
+    if (const auto* battery = root["packs"]["battery"][pack.pack - 1].as_string())
+        root.insert_or_assign("battery", battery->get());
+    root.erase("packs");
+    const auto& path = *root.get_as<toml::table>("path");
+    toml::table flown;
+    for (const auto* key : {"airspeed_m_per_s", "climb_m_per_s", "descent_m_per_s", "max_bank_deg", "turn_radius_m"})
+        if (const auto* value = path.get(key)) flown.insert(key, *value);
+    flown.insert(pack.blocks.empty() ? "waypoints" : "flight_plan", pack.plan_file);
+    toml::array blocks;
+    for (const auto& block : pack.blocks) blocks.push_back(block);
+    if (!blocks.empty()) flown.insert("blocks", std::move(blocks));
+    root.insert_or_assign("path", std::move(flown));
 }
 
 /// Puts the chosen lines into a [path]: returns what was chosen; std::nullopt if all is fixed. Lines of several spacings are strips instead.
@@ -189,7 +211,8 @@ std::string strips_text(const path::SurveyLayout& layout) {
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
                                         const std::filesystem::path& folder,
-                                        const std::optional<path::SurveyLayout>& survey) {
+                                        const std::optional<path::SurveyLayout>& survey,
+                                        const std::optional<PlannedPack>& pack) {
     const auto plain = normalise_text(text);
     auto root = toml::parse(plain, path.string());
     root.insert_or_assign("format", format_version);
@@ -198,6 +221,7 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
     root.erase("policy");  // the schedule is decided
     const auto from = absolute_path(path).parent_path();
     const auto to = absolute_path(folder);
+    if (pack) choose_pack(root, *pack);
     std::vector<RenamedFile> renamed;
     for (const std::string_view key : {"mechanical", "battery"}) move_path(root, key, from, to, renamed);
     if (auto* components = root.get_as<toml::table>("components")) {
@@ -205,13 +229,14 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to, renamed);
     }
     std::optional<ChosenValues> chosen;
-    if (auto* cruise = root.get_as<toml::table>("path")) {
+    if (auto* cruise = root.get_as<toml::table>("path"); cruise != nullptr && !pack) {
         for (const std::string_view key : {"waypoints", "flight_plan", "area"})
             move_path(*cruise, key, from, to, renamed);
         if (survey) chosen = choose_lines(*cruise, *survey);
     }
     const bool has_strips = chosen && survey->strips.size() > 1;
-    const auto schedule_below = (has_strips ? strips_text(*survey) : "") + schedule_text(compute, schedule);
+    const auto schedule_below =
+        (has_strips ? strips_text(*survey) : "") + schedule_text(compute, schedule, pack.has_value());
     if (const auto kept = edit_keeping_comments(plain, renamed, chosen, root)) return {*kept + schedule_below, false};
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};

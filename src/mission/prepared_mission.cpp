@@ -28,18 +28,18 @@ Pieces repeated_up_to(const Pieces& measured, double duration_s) {
 
 }  // namespace
 
-PreparedMission prepare_mission(const MissionVariant& mission) {
+PreparedMission prepare_mission(const MissionVariant& mission, const std::optional<double>& probability) {
     PreparedMission prepared{setup_of(mission), {}, std::nullopt, ScheduleOrigin::given};
     if (const auto* scheduled = std::get_if<Mission>(&mission)) {
         prepared.schedule = scheduled->schedule;
         return prepared;
     }
     const auto& problem = std::get<PlanningProblem>(mission);
-    if (problem.adaptive) {
+    if (problem.adaptive && !probability) {
         prepared.adaptive = make_adaptive_planner(problem);
         prepared.origin = ScheduleOrigin::replanned;
     } else {
-        auto plan = plan_mission(problem);
+        auto plan = plan_mission(problem, probability);
         prepared.setup = std::move(plan.mission.setup);
         prepared.schedule = std::move(plan.mission.schedule);
         prepared.origin = summary_with_origin(plan).schedule;

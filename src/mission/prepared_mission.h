@@ -16,8 +16,9 @@ struct PreparedMission {
     ScheduleOrigin origin = ScheduleOrigin::given;
 };
 
-/// Plans a mission that is yet to be planned; of an adaptive one, prepares the plans. Throws as plan_mission.
-PreparedMission prepare_mission(const MissionVariant& mission);
+/// Plans a mission that is yet to be planned; of an adaptive one, prepares the plans, or with `probability` plans it
+/// before take-off, too. Throws as plan_mission.
+PreparedMission prepare_mission(const MissionVariant& mission, const std::optional<double>& probability = std::nullopt);
 
 /// A simulated schedule.
 struct SimulatedFlight {

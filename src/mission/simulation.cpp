@@ -3,10 +3,12 @@
 #include "base/csv.h"
 #include "base/units.h"
 #include "mission/simulation/load_segments.h"
+#include "path/path_entries.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -152,6 +154,18 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     return summary;
 }
 
+/// The charge at a time of the simulation; NaN after the battery's end.
+double charge_percent(const Simulation& simulation, double time_s) {
+    const auto& rows = simulation.curve.rows;
+    if (rows.empty() || time_s > powered_end_s(simulation.summary)) return std::nan("");
+    const auto after = std::ranges::lower_bound(rows, time_s, {}, &SocRow::time_s);
+    if (after == rows.begin()) return after->soc_percent;
+    if (after == rows.end()) return rows.back().soc_percent;
+    const auto& [before, next] = std::pair(*std::prev(after), *after);
+    const double part = next.time_s > before.time_s ? (time_s - before.time_s) / (next.time_s - before.time_s) : 1.0;
+    return std::lerp(before.soc_percent, next.soc_percent, part);
+}
+
 }  // namespace
 
 Simulation simulate(const MissionSetup& mission, const Schedule& schedule, const SimulationOptions& steps,
@@ -189,6 +203,43 @@ std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, 
     EstimatedLanding landing{setup.battery.capacity_ah, summary.final_soc_percent, std::nullopt, summary.keeps_reserve};
     if (!summary.feasible) landing.fails_at_s = powered_end_s(summary);
     return landing;
+}
+
+std::optional<FlownTrack> flown_track(const MissionSetup& mission, const Simulation& simulation) {
+    if (!mission.cruise_path) return std::nullopt;
+    const auto& plan = *mission.cruise_path->plan;
+    const auto& elements = plan.path.elements;
+    constexpr double step_s = 2.0;
+    constexpr int most_points = 20, most_of_circles = 400;
+    const auto flown = compute_trajectory(plan.path, plan.wind, path::InfeasibleLegPolicy::crawl);
+    FlownTrack track;
+    track.wind = plan.wind;
+    path::LocalPosition start;
+    const auto add = [&](const path::LocalPosition& place, double time_s) {
+        track.time_s.push_back(time_s);
+        track.east_m.push_back(place.east_m);
+        track.north_m.push_back(place.north_m);
+        track.soc_percent.push_back(charge_percent(simulation, time_s));
+        if (!plan.origin) return;
+        const auto where = to_geodetic(plan.origin->start + place, plan.origin->place);
+        track.latitude_deg.push_back(where.latitude_deg);
+        track.longitude_deg.push_back(where.longitude_deg);
+    };
+    double time_s = timeline_of(mission.duration_s).start_s[Phase::cruise];
+    if (!elements.empty()) add(start, time_s);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+        if (elements[e].name == way_home && !track.return_index) track.return_index = track.time_s.size() - 1;
+        const bool is_round = std::holds_alternative<path::Circles>(elements[e].shape);
+        const int count =
+            std::clamp(static_cast<int>(flown.element_s[e] / step_s), 1, is_round ? most_of_circles : most_points);
+        for (int i = 1; i <= count; ++i) {
+            const double part = static_cast<double>(i) / count;
+            add(start + path::local_position_at({{elements[e]}}, {0, part}), time_s + part * flown.element_s[e]);
+        }
+        start = start + path::local_position_at({{elements[e]}}, {1, 0.0});
+        time_s += flown.element_s[e];
+    }
+    return track;
 }
 
 std::string to_csv(const SocCurve& curve) {

@@ -4,6 +4,7 @@
 #include "mission/mission.h"
 #include "mission/mission_summary.h"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,21 @@ Simulation simulate(const Mission& mission, const SimulationOptions& steps = {},
 /// capacity agrees with them, or the pack is of no flights.
 std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, const Schedule& schedule,
                                                    const Disturbances& disturbances = {});
+
+/// A cruise along its path as it is flown, with the charge along it.
+struct FlownTrack {
+    std::vector<double> time_s;  ///< since the mission began
+    std::vector<double> east_m;  ///< from the start of the path
+    std::vector<double> north_m;
+    std::vector<double> latitude_deg;  ///< empty where the place of the path on the earth is unknown
+    std::vector<double> longitude_deg;
+    std::vector<double> soc_percent;          ///< not a number after the battery's end
+    std::optional<std::size_t> return_index;  ///< where the way home begins, if a pack is to be changed
+    path::Wind wind;
+};
+
+/// Returns the track of a simulated mission; std::nullopt of one without a path.
+std::optional<FlownTrack> flown_track(const MissionSetup& mission, const Simulation& simulation);
 
 /// time_s,phase,mechanical_w,compute_w,power_w,current_a,soc_percent,terminal_voltage_v
 std::string to_csv(const SocCurve& curve);

@@ -1,27 +1,65 @@
 #include "path/area.h"
 
+#include "path/coverage/survey_cells.h"
 #include "path/plan_blocks.h"
 #include "path/plans/kml.h"
-#include "path/plans/patterns.h"
 #include "path/waypoint_files.h"
 
 #include <algorithm>
+#include <regex>
 #include <utility>
+#include <vector>
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::path {
 namespace {
 
-constexpr const char* one_polygon = "expected one polygon, in GeoJSON or KML";
+/// More would take minutes.
+constexpr std::size_t max_closed_corners = 300;
+constexpr const char* expected = "expected polygons, in GeoJSON or KML";
 
-Outline kml_outline(std::string_view text, const std::string& file) {
-    const auto document = load_kml(text, file, one_polygon);
-    const auto outlines = document.select_nodes("//outerBoundaryIs");
-    if (outlines.size() != 1) throw InputError({file}, fmt::format("has {} polygons", outlines.size()), one_polygon);
-    return {kml_places(document.select_nodes("//outerBoundaryIs/LinearRing/coordinates"), file).places,
-            !document.select_nodes("//innerBoundaryIs").empty()};
+/// Polygons of a placemark whose name says "no-fly" are not flown over.
+AreaOutlines kml_area(std::string_view text, const std::string& file) {
+    const auto document = load_kml(text, file, expected);
+    AreaOutlines found;
+    for (const auto& polygon : document.select_nodes("//Polygon")) {
+        const auto ring = [&](const char* boundary, std::vector<Outline>& outlines) {
+            const auto path = fmt::format("{}/LinearRing", boundary);
+            for (const auto& node : polygon.node().select_nodes(path.c_str()))
+                outlines.push_back(kml_places(node.node().select_nodes("coordinates"), file).places);
+        };
+        static const std::regex no_fly("no[ _-]?fly", std::regex::icase);
+        const auto placemark = polygon.node().select_node("ancestor::Placemark[1]/name");
+        if (std::regex_search(placemark.node().text().get(), no_fly)) {
+            ring("outerBoundaryIs", found.closed);
+            continue;
+        }
+        ring("outerBoundaryIs", found.areas);
+        ring("innerBoundaryIs", found.closed);
+    }
+    return found;
+}
+
+/// Reads the areas of a file, in metres from the first corner. Throws InputError.
+SurveyedArea local_area(const AreaOutlines& outlines, const std::string& file) {
+    if (outlines.areas.empty()) throw InputError({file}, "has no polygon to fly over", expected);
+    std::size_t closed_corners = 0;
+    for (const auto& polygon : outlines.closed) closed_corners += polygon.size();
+    if (closed_corners > max_closed_corners)
+        throw InputError({file}, fmt::format("its holes and no-fly zones have {} corners", closed_corners),
+                         fmt::format("draw them with at most {}", max_closed_corners));
+    const auto local = [&](const std::vector<Outline>& polygons) {
+        std::vector<Polygon> found;
+        for (const auto& polygon : polygons) {
+            if (polygon.size() < 3)
+                throw InputError({file}, fmt::format("a polygon has {} corners", polygon.size()), expected);
+            found.emplace_back();
+            for (const auto& corner : polygon) found.back().push_back(to_local(corner, outlines.areas.front().front()));
+        }
+        return found;
+    };
+    return {local(outlines.areas), local(outlines.closed)};
 }
 
 /// The layout's strips from left to right, with the lines of each.
@@ -37,7 +75,8 @@ double area_between_m2(const LinedPolygon& polygon, double left_m, double right_
     double area_m2 = 0.0;
     const double width_m = (right_m - left_m) / slices;
     for (int i = 0; i < slices; ++i)
-        if (const auto line = polygon.line_at(left_m + (i + 0.5) * width_m)) area_m2 += width_m * length_m(*line);
+        if (const auto line = polygon.line_at(left_m + (i + 0.5) * width_m))
+            area_m2 += width_m * distance_between_m(line->from, line->to);
     return area_m2;
 }
 
@@ -58,35 +97,21 @@ std::vector<LinedStrip> lined_strips(const LinedPolygon& polygon, const SurveyLa
     return strips;
 }
 
-}  // namespace
-
-SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout) {
-    const auto outline =
-        plan_format(text) == PlanFormat::flight_plan ? kml_outline(text, file) : geojson_outline(text, file);
-    if (outline.corners.size() < 3)
-        throw InputError({file}, fmt::format("its polygon has {} corners", outline.corners.size()), one_polygon);
-    const auto& origin = outline.corners.front();
-    std::vector<LocalPosition> corners;
-    for (const auto& corner : outline.corners) corners.push_back(to_local(corner, origin));
-    PathEntry like;
-    like.name = "the survey of the area";
-    like.where = {file};
-    SurveyPlan survey;
-    survey.starts_at_first_place = true;
-    if (outline.has_holes) survey.not_flown.emplace_back("the holes of the area are flown over");
+/// Appends the lines of a layout over one polygon, in its strips.
+void write_strips(const PatternWriter& writer, const Polygon& corners, const SurveyLayout& layout, SurveyPlan& survey) {
     const LinedPolygon polygon(corners, layout.heading_deg);
     const double width_m = polygon.right_m() - polygon.left_m();
     // The side to begin at is that of the first strip's spacing over all of the area, whatever the others are.
     const auto& first = layout.strips.front();
-    const bool is_reversed =
-        begins_with_last(survey_lines(corners, first.spacing_m, layout.heading_deg, {file}), corners.front());
+    const bool is_reversed = begins_with_last(
+        survey_lines(corners, first.spacing_m, layout.heading_deg, writer.like.where), corners.front());
     std::vector<SurveyLine> lines;
     std::vector<const SurveyStrip*> strip_of;
     for (const auto& strip : lined_strips(polygon, layout, is_reversed)) {
         auto& cover = survey.strips.emplace_back();
         cover.area_m2 = area_between_m2(polygon, strip.left_m, strip.right_m);
         for (std::size_t i = 0; i < strip.lines.size(); ++i) {
-            cover.lines_m += length_m(strip.lines[i]);
+            cover.lines_m += distance_between_m(strip.lines[i].from, strip.lines[i].to);
             lines.push_back(strip.lines[i]);
             strip_of.push_back(strip.strip);
             // The lines are at whole spacings from the left edge.
@@ -98,16 +123,54 @@ SurveyPlan parse_area(std::string_view text, const std::string& file, const Surv
         }
     }
     if (lines.size() > static_cast<std::size_t>(max_survey_lines) || lines.empty())
-        throw InputError({file}, fmt::format("{} lines fit into the area, expected 1 to 5000", lines.size()));
+        throw InputError(writer.like.where,
+                         fmt::format("{} lines fit into the area, expected 1 to 5000", lines.size()));
     const auto spacing_m = layout.strips.size() == 1 ? std::optional(first.spacing_m) : std::nullopt;
-    PatternWriter{like, survey.entries}.lines_in_order(std::move(lines), spacing_m, corners.front());
-    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
-    for (auto& entry : survey.entries) {
+    writer.lines_in_order(std::move(lines), spacing_m, corners.front());
+    for (auto& entry : survey.entries)
         if (entry.survey_line > 0) entry.airspeed_m_per_s = strip_of[entry.survey_line - 1]->airspeed_m_per_s;
+}
+
+/// Appends the lines of one spacing over an area that is divided.
+void write_cells(const PatternWriter& writer, const SurveyedArea& area, const SurveyLayout& layout,
+                 SurveyPlan& survey) {
+    if (layout.strips.size() > 1)
+        throw InputError(writer.like.where,
+                         "lines of several spacings do not fit an area of several polygons, or with notches or holes",
+                         "give one spacing_m, or divide the area into simple ones");
+    const auto& strip = layout.strips.front();
+    const auto lines = write_area_survey(writer, area, strip.spacing_m, layout.heading_deg);
+    if (ClosedZones(area.closed, 0.0).are_crossed(lines.back().to, area.areas.front().front()))
+        survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
+    auto& cover = survey.strips.emplace_back();
+    cover.area_m2 = open_area_m2(area, layout.heading_deg);
+    for (const auto& line : lines) {
+        cover.lines_m += distance_between_m(line.from, line.to);
+        survey.line_to.push_back(cover.lines_m);
+    }
+    for (double& to : survey.line_to) to /= cover.lines_m;
+    for (auto& entry : survey.entries) entry.airspeed_m_per_s = strip.airspeed_m_per_s;
+}
+
+}  // namespace
+
+SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout) {
+    const auto outlines =
+        plan_format(text) == PlanFormat::flight_plan ? kml_area(text, file) : geojson_area(text, file);
+    const auto area = local_area(outlines, file);
+    PathEntry like;
+    like.name = "the survey of the area";
+    like.where = {file};
+    SurveyPlan survey;
+    survey.starts_at_first_place = true;
+    const PatternWriter writer{like, survey.entries};
+    if (is_divided(area, layout.strips.front().spacing_m, layout.heading_deg, like.where))
+        write_cells(writer, area, layout, survey);
+    else
+        write_strips(writer, area.areas.front(), layout, survey);
+    for (auto& entry : survey.entries) {
         if (!entry.place) continue;
-        double above_m = 0.0;
-        auto& place = entry.geographic.emplace();
-        plane.Reverse(entry.place->east_m, entry.place->north_m, 0.0, place.latitude_deg, place.longitude_deg, above_m);
+        entry.geographic = to_geodetic(*entry.place, outlines.areas.front().front());
         entry.place.reset();
     }
     return survey;

@@ -38,9 +38,10 @@ struct SurveyPlan : PlanEntries {
     std::vector<StripCover> strips;  ///< those of the layout
 };
 
-/// Plans lines over the polygon of a GeoJSON or KML file, on the course of the layout and back, with half circles
-/// between them. Holes and notches count as area. Throws InputError, placed in the file, unless it has one polygon, in
-/// which lines fit.
+/// Plans lines over the polygons of a GeoJSON or KML file, on the course of the layout and back, with half circles between
+/// them, around holes and polygons that are not to be flown over (docs/missions.md). Throws InputError, placed in the
+/// file, for an area without lines, one that these zones enclose, and a layout of several strips over an area that
+/// notches, holes or zones divide.
 SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout);
 
 }  // namespace flightwatt::path

@@ -26,8 +26,9 @@ struct PlannedPath {
     FlightPath path;  ///< as it is flown
     Wind wind;
     mechanical::PhysicalModel power;
-    std::optional<TurnLimits> turns = std::nullopt;  ///< absent: the path is flown as it is drawn
-    FlightPath drawn = {};                           ///< the path without the turns, if there are limits
+    std::optional<TurnLimits> turns = std::nullopt;   ///< absent: the path is flown as it is drawn
+    FlightPath drawn = {};                            ///< the path without the turns, if there are limits
+    std::optional<PathOrigin> origin = std::nullopt;  ///< absent: in metres from an unknown place
 };
 
 /// Returns the path without its turns.

@@ -48,6 +48,7 @@ struct PathElement {
     std::optional<double> climb_rate_m_per_s = std::nullopt;
     bool is_return_leg = false;   ///< the leg from the end of the path to its start
     bool is_turn = false;         ///< circles between lines, which are not repeated
+    std::size_t drawn = 0;        ///< of a path with turns: the index of its element in the path without them
     std::size_t survey_line = 0;  ///< the line of a survey that it flies or leads to, from 1; 0: none
     std::string name;             ///< its name in messages: "leg 3"
     Location where;
@@ -84,9 +85,26 @@ struct LocalPosition {
     double north_m = 0.0;
 
     friend bool operator==(const LocalPosition&, const LocalPosition&) = default;
+    friend LocalPosition operator+(const LocalPosition& a, const LocalPosition& b) {
+        return {a.east_m + b.east_m, a.north_m + b.north_m};
+    }
     friend LocalPosition operator-(const LocalPosition& a, const LocalPosition& b) {
         return {a.east_m - b.east_m, a.north_m - b.north_m};
     }
+};
+
+/// A position on the WGS84 ellipsoid.
+struct GeodeticPosition {
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+};
+
+/// Where a path is on the earth.
+struct PathOrigin {
+    GeodeticPosition place;                 ///< where the plane of the path touches the ellipsoid
+    LocalPosition start = {};               ///< of the path, from there
+    double ground_m = 0.0;                  ///< altitude of the ground above the sea; 0 where it is unknown
+    std::optional<double> altitude_m = {};  ///< of the start above the ground
 };
 
 /// Returns a position moved straight over ground.

@@ -10,8 +10,8 @@
 namespace flightwatt::path {
 namespace {
 
-constexpr double max_m = 300e3;  // of a place from the start: beyond, coordinates were mistaken
-constexpr double same_place_m = 1e-6;
+constexpr double max_m = 300e3;        // of a place from the start: beyond, coordinates were mistaken
+constexpr double same_place_m = 1e-3;  // of places in a file, which are rounded
 
 /// Of the plane in which a geographic path is flown.
 std::optional<GeodeticPosition> origin_of(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
@@ -49,6 +49,14 @@ class PathBuilder {
         if (entry.circles) circle(entry, place_of(entry));
         if (entry.hold_s) add_element(entry, Hold{*entry.hold_s});
         if (change_m_ != 0.0) change_height(entry);
+    }
+
+    std::optional<PathOrigin> origin() const {
+        const auto place = origin_ ? origin_ : defaults_.local_origin;
+        if (!place) return std::nullopt;
+        PathOrigin origin{*place, start_, defaults_.ground_m, start_altitude_m_};
+        if (origin.altitude_m) *origin.altitude_m -= origin.ground_m;
+        return origin;
     }
 
     FlightPath finish() {
@@ -229,6 +237,14 @@ LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& or
     return local;
 }
 
+GeodeticPosition to_geodetic(const LocalPosition& position, const GeodeticPosition& origin) {
+    const GeographicLib::LocalCartesian plane(origin.latitude_deg, origin.longitude_deg);
+    GeodeticPosition place;
+    double above_m = 0.0;
+    plane.Reverse(position.east_m, position.north_m, 0.0, place.latitude_deg, place.longitude_deg, above_m);
+    return place;
+}
+
 FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
     PathBuilder builder(defaults, entries);
     for (const auto& entry : entries) builder.add(entry);
@@ -237,6 +253,12 @@ FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults&
         throw InputError(defaults.where, "the path has no leg to fly: it has no waypoint beyond its start",
                          "add legs or waypoints");
     return path;
+}
+
+std::optional<PathOrigin> path_origin(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+    PathBuilder builder(defaults, entries);
+    for (const auto& entry : entries) builder.add(entry);  // the first may state the altitude
+    return builder.origin();
 }
 
 }  // namespace flightwatt::path

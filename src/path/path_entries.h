@@ -18,15 +18,12 @@ inline constexpr double min_radius_m = 1.0;
 inline constexpr double max_radius_m = 1e5;
 inline constexpr double max_leg_m = 1e6;
 
-/// A position on the WGS84 ellipsoid.
-struct GeodeticPosition {
-    double latitude_deg = 0.0;
-    double longitude_deg = 0.0;
-};
-
 /// Returns the place in the plane that touches the ellipsoid at `origin`: exact to 1e-6 of distances within 10 km of
 /// it.
 LocalPosition to_local(const GeodeticPosition& place, const GeodeticPosition& origin);
+
+/// Returns the place of a position in that plane.
+GeodeticPosition to_geodetic(const LocalPosition& position, const GeodeticPosition& origin);
 
 /// One entry of a path as written: a place to fly to, and the manoeuvre there. Absent values are those of the entry
 /// before.
@@ -72,7 +69,9 @@ struct PathDefaults {
     ClimbRates rates;
     std::optional<LocalPosition> start;  ///< absent: the origin, or the first entry if that is geographic
     std::optional<GeodeticPosition> geographic_start;
-    bool starts_at_first_place = false;  ///< the path starts at the first place; for circles at their edge
+    std::optional<GeodeticPosition> local_origin;  ///< of places in metres, if it is known
+    double ground_m = 0.0;                         ///< above the sea, where the altitudes are above the sea
+    bool starts_at_first_place = false;            ///< the path starts at the first place; for circles at their edge
     bool return_to_start = false;
     Location where;
 };
@@ -81,5 +80,8 @@ struct PathDefaults {
 /// hold. Throws InputError, placed at the entry, for a place in other coordinates than the path's or 300 km or more
 /// from the start, for an altitude if the path has none at its start, and for an entry that is no manoeuvre or two.
 FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
+
+/// Returns where the path of the entries is; std::nullopt for one in metres from an unknown place.
+std::optional<PathOrigin> path_origin(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
 }  // namespace flightwatt::path

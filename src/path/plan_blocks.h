@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::path {
@@ -24,8 +25,8 @@ std::vector<PlanBlock> parse_plan(std::string_view text, const std::string& file
 PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, const std::vector<std::string>& blocks,
                               const AutopilotSettings& settings);
 
-/// Returns lat0 and lon0 of a Paparazzi flight plan, the origin of its places.
-GeodeticPosition flight_plan_origin(std::string_view text, const std::string& file);
+/// Returns lat0 and lon0 of a Paparazzi flight plan, the origin of its places, and the altitude of its ground, or 0.
+std::pair<GeodeticPosition, double> flight_plan_origin(std::string_view text, const std::string& file);
 
 /// Reads waypoints of a Paparazzi flight plan, in the order of the names. Throws as parse_plan_blocks.
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,

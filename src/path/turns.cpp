@@ -407,7 +407,10 @@ double turn_radius_m(double airspeed_m_per_s, double bank_deg, double wind_m_per
 }
 
 TurnedPath fly_turns(const FlightPath& drawn, const Wind& wind, const TurnLimits& limits) {
-    return limits.is_rotorcraft ? RotorcraftTurns(drawn, wind, limits).fly() : WingTurns(drawn, wind, limits).fly();
+    auto numbered = drawn;
+    for (std::size_t i = 0; i < drawn.elements.size(); ++i) numbered.elements[i].drawn = i;
+    return limits.is_rotorcraft ? RotorcraftTurns(numbered, wind, limits).fly()
+                                : WingTurns(numbered, wind, limits).fly();
 }
 
 }  // namespace flightwatt::path

@@ -60,7 +60,7 @@ void refuse_other_columns(const CsvTable& table) {
     }
 }
 
-/// Collects the points of GeoJSON objects, or the corners of one area.
+/// Collects the points of GeoJSON objects, or the polygons of areas.
 class GeoJsonReader {
   public:
     explicit GeoJsonReader(const std::string& file, bool is_area = false) : is_area_(is_area) { at_.where = {file}; }
@@ -81,12 +81,12 @@ class GeoJsonReader {
     }
 
     std::vector<PathEntry> entries;
-    bool has_holes = false;
+    AreaOutlines outlines;
 
   private:
     [[noreturn]] void refuse(const std::string& message) const {
         throw InputError(at_.where, at_.name.empty() ? message : at_.name + " " + message,
-                         is_area_ ? "expected GeoJSON: one Polygon, alone, as feature or in a FeatureCollection"
+                         is_area_ ? "expected GeoJSON: Polygons, alone, as features or in a FeatureCollection"
                                   : "expected GeoJSON: Points and LineStrings, alone, as features or in a "
                                     "FeatureCollection; a Polygon is an area of [path]");
     }
@@ -105,9 +105,11 @@ class GeoJsonReader {
 
     void read_feature(const Json& feature) {
         const auto first = entries.size();
-        read_geometry(member(feature, "geometry", "a geometry", &Json::is_object));
         const auto properties = feature.find("properties");
-        if (properties == feature.end() || !properties->is_object()) return;
+        const bool has_properties = properties != feature.end() && properties->is_object();
+        is_closed_ = is_area_ && has_properties && is_no_fly(*properties);
+        read_geometry(member(feature, "geometry", "a geometry", &Json::is_object));
+        if (is_area_ || !has_properties) return;
         for (const auto& of : entry_values) {
             const auto value = properties->find(of.name);
             if (value == properties->end() || value->is_null()) continue;
@@ -127,13 +129,30 @@ class GeoJsonReader {
         for (const auto& position : coordinates) read_position(position);
     }
 
+    bool is_no_fly(const Json& properties) const {
+        const auto value = properties.value("no_fly", Json(false));
+        if (!value.is_boolean()) refuse("has a 'no_fly' that is not true or false");
+        return value.get<bool>();
+    }
+
     void read_area(const Json& geometry, const std::string& type) {
-        if (type != "Polygon") refuse(fmt::format("is a {}, which is no area", type));
-        if (!entries.empty()) refuse("is a second area");
-        const auto& rings = member(geometry, "coordinates", "an array", &Json::is_array);
-        if (rings.empty() || !rings.front().is_array()) refuse("has no outer ring");
-        for (const auto& position : rings.front()) read_position(position);
-        has_holes = rings.size() > 1;
+        const auto& coordinates = member(geometry, "coordinates", "an array", &Json::is_array);
+        if (type == "Polygon") return read_polygon(coordinates);
+        if (type != "MultiPolygon") refuse(fmt::format("is a {}, which is no area", type));
+        for (const auto& polygon : coordinates) read_polygon(polygon);
+    }
+
+    /// Rings after the first are holes.
+    void read_polygon(const Json& rings) {
+        if (!rings.is_array() || rings.empty() || !rings.front().is_array()) refuse("has no outer ring");
+        bool is_hole = false;
+        for (const auto& ring : rings) {
+            entries.clear();
+            for (const auto& position : ring) read_position(position);
+            auto& outline = (is_closed_ || is_hole ? outlines.closed : outlines.areas).emplace_back();
+            for (const auto& corner : entries) outline.push_back(*corner.geographic);
+            is_hole = true;
+        }
     }
 
     /// Longitude comes first.
@@ -151,6 +170,7 @@ class GeoJsonReader {
 
     PathEntry at_;  ///< where it reads: file and feature
     bool is_area_;
+    bool is_closed_ = false;  ///< the feature is not flown over
 };
 
 }  // namespace
@@ -189,13 +209,10 @@ std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& f
     return std::move(reader.entries);
 }
 
-Outline geojson_outline(std::string_view text, const std::string& file) {
+AreaOutlines geojson_area(std::string_view text, const std::string& file) {
     GeoJsonReader reader(file, true);
     reader.read(parse_json(text, file, "expected GeoJSON: a Polygon"));
-    Outline outline;
-    for (const auto& corner : reader.entries) outline.corners.push_back(*corner.geographic);
-    outline.has_holes = reader.has_holes;
-    return outline;
+    return std::move(reader.outlines);
 }
 
 PlanEntries parse_kml(std::string_view text, const std::string& file) {

@@ -23,14 +23,17 @@ std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& f
 /// Reads waypoints from KML, level: its LineStrings, without them its Points. Throws InputError.
 PlanEntries parse_kml(std::string_view text, const std::string& file);
 
-/// The outer boundary of an area.
-struct Outline {
-    std::vector<GeodeticPosition> corners;
-    bool has_holes = false;
+/// Corners of a polygon on the ellipsoid.
+using Outline = std::vector<GeodeticPosition>;
+
+/// Polygons of an area file.
+struct AreaOutlines {
+    std::vector<Outline> areas;
+    std::vector<Outline> closed;  ///< holes, and zones that are not flown over
 };
 
-/// Reads the outline of the only geometry of a GeoJSON file, a Polygon. Throws InputError, placed in the file, for
-/// anything else.
-Outline geojson_outline(std::string_view text, const std::string& file);
+/// Reads the polygons of a GeoJSON file; those of a feature with the property "no_fly": true are closed. Throws
+/// InputError, placed in the file, for anything else.
+AreaOutlines geojson_area(std::string_view text, const std::string& file);
 
 }  // namespace flightwatt::path

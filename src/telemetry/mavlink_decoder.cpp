@@ -4,6 +4,7 @@
 #include "telemetry/mavlink/vehicles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -19,8 +20,8 @@ struct MavlinkVehicles::State {
     std::vector<double> values;  ///< of the last message; a member to reuse its memory
 };
 
-MavlinkVehicles::MavlinkVehicles(std::vector<MessageRequest> wanted) : state_(std::make_unique<State>()) {
-    for (auto& [message, fields] : wanted)
+MavlinkVehicles::MavlinkVehicles(const std::vector<MessageRequest>& wanted) : state_(std::make_unique<State>()) {
+    for (const auto& [message, fields] : wanted)
         for (const auto& field : fields)
             state_->wanted[message].push_back(mavlink_message(message).layout.index_of(field).value());
 }
@@ -98,7 +99,7 @@ std::optional<MavlinkPacket> read_mavlink_packet(std::string_view bytes) {
 }
 
 std::string tlog_entry(double unix_s, std::string_view packet) {
-    const auto time_us = static_cast<std::uint64_t>(unix_s * 1e6 + 0.5);
+    const auto time_us = static_cast<std::uint64_t>(std::llround(unix_s * 1e6));
     std::string entry;
     for (int shift = 56; shift >= 0; shift -= 8) entry += static_cast<char>(time_us >> static_cast<unsigned>(shift));
     entry += packet;

@@ -31,7 +31,7 @@ struct MavlinkMessageOfVehicle {
 class MavlinkVehicles {
   public:
     /// Reads these messages and fields.
-    explicit MavlinkVehicles(std::vector<MessageRequest> wanted);
+    explicit MavlinkVehicles(const std::vector<MessageRequest>& wanted);
     ~MavlinkVehicles();
     /// Returns the number of packets that got lost on the link since the last call.
     std::size_t take_lost();

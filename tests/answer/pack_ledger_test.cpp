@@ -49,7 +49,7 @@ std::vector<PackUse> two_packs(bool are_named, double b_ohm = first_ohm) {
     std::vector<PackUse> uses;
     for (int f = 0; f < 7; ++f) {
         const double day = 12.0 * f;
-        const auto seed = static_cast<std::uint64_t>(10 * f);
+        const auto seed = 10 * static_cast<std::uint64_t>(f);
         uses.push_back(flown(are_named ? "A" : "", day + 0.3, first_ohm, seed + 1));
         uses.push_back(flown(are_named ? "B" : "", day + 0.6, b_ohm * (1.0 + (are_named ? 0.4 * f : 0.0)), seed + 2));
     }

@@ -107,6 +107,19 @@ TEST(AtomicFile, TakesNamesAsLongAsTheyCanBe) {
     EXPECT_EQ(read_file(folder / std::string(255, 'x')), "x");
 }
 
+TEST(AtomicFile, WritesSeveralFilesOrNone) {
+    const auto folder = test::scratch_dir();
+    write_file_atomically(folder / "a.txt", "old");
+    std::filesystem::create_directory(folder / "c.txt");
+    EXPECT_THROW(write_files_atomically({{folder / "a.txt", "new"}, {folder / "b.txt", "b"}, {folder / "c.txt", "c"}}),
+                 OutputError);
+    EXPECT_EQ(read_file(folder / "a.txt"), "old");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
+    write_files_atomically({{folder / "a.txt", "new"}, {folder / "b.txt", "b"}});
+    EXPECT_EQ(read_file(folder / "a.txt") + read_file(folder / "b.txt"), "newb");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 3);
+}
+
 TEST(AtomicFile, LeavesUnfinishedFilesWhereItIsTold) {
     const auto folder = test::scratch_dir();
     std::filesystem::create_directories(folder / "unfinished");

@@ -123,6 +123,30 @@ TEST(FlightBins, OfARotorcraftHaveItsTerms) {
                 5.0);
 }
 
+TEST(FlightBins, HaveTheSlopesOfTheirTermsByTheAirspeed) {
+    FlightBin bin{.values = term_values({12.0, 1.0, 1.2}), .airspeed_m_per_s = 12.0};
+    const auto slopes = airspeed_slopes(bin);
+    constexpr double step = 1e-4;
+    const auto faster = term_values({12.0 + step, 1.0, 1.2});
+    for (const auto term : all_power_terms)
+        EXPECT_NEAR(slopes[term], (faster[term] - bin.values[term]) / step, 0.01) << to_string(term);
+}
+
+TEST(FlightBins, StateTheErrorOfAnEstimatedAirspeed) {
+    auto series = some_series();
+    EXPECT_EQ(motion(series).airspeed_sd_m_per_s, 0.0);
+    series.firmware = "fixedwing";
+    series.tracks[2] = track("ground_speed_m_per_s", 1.0, [](double) { return 12.0; });
+    series.tracks.push_back(track("course_deg", 1.0, [](double t) { return std::fmod(9.0 * t, 360.0); }));
+    const auto found = motion(series);
+    ASSERT_EQ(found.bins.size(), 20u);
+    EXPECT_NEAR(found.bins[3].airspeed_m_per_s, 12.0, 0.01);
+    EXPECT_GT(found.airspeed_sd_m_per_s, 0.0);
+    EXPECT_LE(found.mean_airspeed_sd_m_per_s, found.airspeed_sd_m_per_s);
+    series.tracks.back() = track("course_deg", 1.0, [](double t) { return t < 300.0 ? 40.0 : 220.0; });
+    EXPECT_THAT(motion(series).no_bins_reason, testing::HasSubstr("and cannot be estimated (no heading within"));
+}
+
 TEST(FlightBins, SayWhyThereAreNone) {
     auto glider = some_series();
     glider.tracks.erase(glider.tracks.begin() + 2);

@@ -135,6 +135,55 @@ TEST(PhysicalFit, TakesAConstantWherePowerDoesNotFollowTheAirspeed) {
     EXPECT_THAT(fit_physical_model(flights).model.terms, ElementsAre(PowerTerm::constant));
 }
 
+double sd_of_drag(const PhysicalModel& model) { return std::sqrt(model.covariance.front().front()); }
+
+TEST(PhysicalFit, WidensByTheCommonErrorOfAnEstimatedAirspeed) {
+    auto flights = made_up_motions(3, 40, {.mean_airspeed_m_per_s = 13.0}, 1);
+    const std::vector terms{PowerTerm::drag, PowerTerm::climb};
+    const auto measured = fit_power_terms(flights, terms);
+    EXPECT_FALSE(measured.airspeed_sd_m_per_s);
+    for (auto& flight : flights) {
+        flight.airspeed_sd_m_per_s = 1e-3;
+        flight.mean_airspeed_sd_m_per_s = 1.3;
+    }
+    flights[0].airspeed_sd_m_per_s = flights[0].mean_airspeed_sd_m_per_s = 0.0;
+    const auto estimated = fit_power_terms(flights, terms);
+    EXPECT_EQ(estimated.coefficients.values, measured.coefficients.values);
+    EXPECT_NEAR(estimated.airspeed_sd_m_per_s.value(), 1e-3, 1e-9);
+    // Of two of three flights with 10 % of the airspeed each: 10 % x 3 / 3 x sqrt(2) of the drag.
+    EXPECT_NEAR(std::sqrt(std::pow(sd_of_drag(estimated), 2) - std::pow(sd_of_drag(measured), 2)), 0.0014, 0.0004);
+}
+
+/// Noise of the airspeed flattens the slope of the power; the interval contains the true one nevertheless.
+TEST(PhysicalFit, HoldsTheSlopeThatAnEstimatedAirspeedFlattens) {
+    int held = 0;
+    int held_without = 0;
+    constexpr int sets = 20;
+    for (unsigned seed = 1; seed <= sets; ++seed) {
+        constexpr double noise_m_per_s = 0.4;
+        auto flights = made_up_motions(3, 100, {.level_sd = 0.0, .drift_sd_w = 1.0}, seed);
+        std::mt19937 random(seed);
+        std::normal_distribution<double> noise(0.0, noise_m_per_s);
+        for (auto& flight : flights) {
+            for (auto& bin : flight.bins) {
+                bin.power_w += 25.0;
+                const double climb = bin.values[PowerTerm::climb];
+                bin.airspeed_m_per_s += noise(random);
+                bin.values = term_values({bin.airspeed_m_per_s, climb});
+            }
+        }
+        const std::vector terms{PowerTerm::drag, PowerTerm::climb, PowerTerm::descent, PowerTerm::constant};
+        const auto holds = [&](const PhysicalModel& model) {
+            return std::abs(model.coefficients[PowerTerm::drag] - 0.01) < 2.0 * sd_of_drag(model);
+        };
+        held_without += holds(fit_power_terms(flights, terms)) ? 1 : 0;
+        for (auto& flight : flights) flight.airspeed_sd_m_per_s = noise_m_per_s;
+        held += holds(fit_power_terms(flights, terms)) ? 1 : 0;
+    }
+    EXPECT_LE(held_without, sets / 4) << "the noise is too small to show anything";
+    EXPECT_GE(held, sets * 4 / 5);
+}
+
 TEST(PhysicalFit, HasNoIntervalFromASingleFlight) {
     const auto fit = fit_physical_model(made_up_motions(1, 50, {}, 1));
     EXPECT_FALSE(fit.model.level_sd.has_value());

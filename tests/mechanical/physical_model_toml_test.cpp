@@ -51,6 +51,16 @@ TEST(PhysicalToml, KeepsTheTermsOfTheSpeedToFly) {
     EXPECT_EQ(read.speed_terms->degrees_of_freedom, model.speed_terms->degrees_of_freedom);
 }
 
+TEST(PhysicalToml, KeepsTheErrorOfAnEstimatedAirspeed) {
+    auto flights = test::made_up_motions(3, 20, {}, 1);
+    for (auto& flight : flights) flight.airspeed_sd_m_per_s = 0.5;
+    const auto model = fit_power_terms(flights, {PowerTerm::drag, PowerTerm::climb});
+    const auto read = read_text(text_with(model)).physical.value();
+    EXPECT_EQ(read.airspeed_sd_m_per_s, model.airspeed_sd_m_per_s);
+    EXPECT_EQ(read.covariance, model.covariance);
+    EXPECT_FALSE(read_text(some_text()).physical->airspeed_sd_m_per_s);
+}
+
 TEST(PhysicalToml, LosesNothing) {
     const auto text = some_text();
     const auto read = read_text(text).physical.value();

@@ -4,6 +4,7 @@
 #include "helpers/rejected.h"
 #include "mission/mission_file.h"
 #include "mission/plan.h"
+#include "mission/sampled_flights.h"
 
 #include <cmath>
 #include <string>
@@ -278,6 +279,45 @@ TEST(PackFlights, ArePlannedEachOnItsOwn) {
     }
     EXPECT_NEAR(*all.total.utility, utility / time_s, 1e-9);
     EXPECT_NEAR(all.total.duration_s - all.on_ground_s, time_s, 1e-6);
+}
+
+/// The share of new flights of each pack, drawn with a seed of their own, that keeps the reserve.
+std::vector<double> kept_by_new_flights(const PackFlights& all, std::size_t flights) {
+    std::vector<double> kept;
+    for (const auto& flight : all.flights) {
+        const PreparedMission flown{setup_of(flight.mission), flight.flown.schedule, std::nullopt, {}};
+        kept.push_back(1.0 - sample_flights(flown, {}, {flights, 4711 + flight.pack}).probability_below_reserve);
+    }
+    return kept;
+}
+
+/// 4000 flights: 0.02 are almost six standard errors.
+TEST(PackFlights, KeepTheReserveWithTheProbabilityWhereTheyGoAsFarAsTheyCan) {
+    const auto mission = read("duration_s = { cruise = 6000 }\n" + wing + "[packs]\ncount = 2\nchange_s = 60\n");
+    const auto all = fly_packs(mission, {}, 0.95);
+    EXPECT_FALSE(all.suffice);
+    ASSERT_EQ(all.flights.size(), 2U);
+    for (const double share : kept_by_new_flights(all, 4000)) EXPECT_NEAR(share, 0.95, 0.02);
+    const auto as_stated = fly_packs(mission);
+    for (const double share : kept_by_new_flights(as_stated, 4000)) EXPECT_NEAR(share, 0.5, 0.1);
+    EXPECT_LT(all.flights.front().cruise_to_s, as_stated.flights.front().cruise_to_s);
+    EXPECT_NEAR(all.flights.front().largest_to_s, all.flights.front().cruise_to_s, 1.0);
+}
+
+TEST(PackFlights, KeepTheReserveWithTheProbabilityAsPlanned) {
+    const auto mission =
+        read_mission(test::source_dir() / "missions/synthetic/several-packs.toml", {.allow_unplanned = true});
+    const auto all = fly_packs(mission, {}, 0.95);
+    ASSERT_TRUE(all.suffice) << describe(all);
+    for (const double share : kept_by_new_flights(all, 2000)) EXPECT_NEAR(share, 0.95, 0.02);
+}
+
+/// Charge that is left over is shared: no pack keeps its reserve less often.
+TEST(PackFlights, KeepTheReserveMoreOftenWithChargeToSpare) {
+    const auto all =
+        fly_packs(read("duration_s = { cruise = 3000 }\n" + wing + "[packs]\ncount = 9\nchange_s = 60\n"), {}, 0.95);
+    ASSERT_TRUE(all.suffice) << describe(all);
+    for (const double share : kept_by_new_flights(all, 2000)) EXPECT_GE(share, 0.93);
 }
 
 TEST(PackFlights, AreNotTakenForOneFlight) {

@@ -42,8 +42,35 @@ TEST(Areas, AreCoveredByLines) {
 8.0,47.0,0 8.00526,47.0,0 8.00526,47.0036,0 8.0,47.0036,0 8.0,47.0,0
 </coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>)";
     EXPECT_NEAR(length_m(parse_area(kml, "a.kml", {0.0, {{50.0}}})), length_m(area), 1e-6);
-    EXPECT_EQ(parse_area(geojson(fmt::format("{0},{0}", ring)), "a", {0.0, {{50.0}}}).not_flown,
-              std::vector<std::string>{"the holes of the area are flown over"});
+}
+
+TEST(Areas, HaveHolesAndZonesThatAreNotFlownOver) {
+    constexpr auto hole = "[[8.0015,47.001],[8.0035,47.001],[8.0035,47.0025],[8.0015,47.0025],[8.0015,47.001]]";
+    const double with_hole_m = length_m(parse_area(geojson(fmt::format("{},{}", ring, hole)), "a", {0.0, {{20.0}}}));
+    EXPECT_LT(with_hole_m, length_m(parse_area(geojson(ring), "a", {0.0, {{20.0}}})) - 500.0);
+    const auto features = fmt::format(
+        R"({{"type":"FeatureCollection","features":[
+{{"type":"Feature","geometry":{{"type":"MultiPolygon","coordinates":[[{}]]}},"properties":{{"name":"field"}}}},
+{{"type":"Feature","geometry":{{"type":"Polygon","coordinates":[{}]}},"properties":{{"no_fly":true}}}}]}})",
+        ring, hole);
+    EXPECT_NEAR(length_m(parse_area(features, "a", {0.0, {{20.0}}})), with_hole_m, 1e-6);
+    const auto outline = [](const char* places) {
+        return fmt::format("<LinearRing><coordinates>{}</coordinates></LinearRing>", places);
+    };
+    const auto field = outline("8.0,47.0 8.00526,47.0 8.00526,47.0036 8.0,47.0036 8.0,47.0");
+    const auto house = outline("8.0015,47.001 8.0035,47.001 8.0035,47.0025 8.0015,47.0025 8.0015,47.001");
+    EXPECT_NEAR(length_m(parse_area(fmt::format("<kml><Placemark><Polygon><outerBoundaryIs>{}</outerBoundaryIs>"
+                                                "<innerBoundaryIs>{}</innerBoundaryIs></Polygon></Placemark></kml>",
+                                                field, house),
+                                    "a.kml", {0.0, {{20.0}}})),
+                with_hole_m, 1e-6);
+    EXPECT_NEAR(
+        length_m(parse_area(fmt::format("<kml><Placemark><Polygon><outerBoundaryIs>{}</outerBoundaryIs></Polygon>"
+                                        "</Placemark><Placemark><name>No-fly: school</name><Polygon>"
+                                        "<outerBoundaryIs>{}</outerBoundaryIs></Polygon></Placemark></kml>",
+                                        field, house),
+                            "a.kml", {0.0, {{20.0}}})),
+        with_hole_m, 1e-6);
 }
 
 /// Strips are of the width in the order of flight; a strip cut at the end of a line has the same lines.
@@ -69,19 +96,36 @@ TEST(Areas, AreCoveredByStrips) {
     }
 }
 
-TEST(Areas, AreOnePolygon) {
+TEST(Areas, ThatAreDividedHaveOneSpacing) {
+    constexpr auto hole = "[[8.0015,47.001],[8.0035,47.001],[8.0035,47.0025],[8.0015,47.0025],[8.0015,47.001]]";
+    const auto text = geojson(fmt::format("{},{}", ring, hole));
+    const auto area = parse_area(text, "a", {0.0, {{20.0}}});
+    EXPECT_EQ(area.line_to.back(), 1.0);
+    EXPECT_NEAR(area.strips.front().area_m2, 400.0 * 400.0 - 152.0 * 167.0, 800.0);
+    EXPECT_NE(rejected([&] {
+                  parse_area(text, "a", {0.0, {{20.0, 0.5}, {40.0}}});
+              }).find("of several spacings"),
+              std::string::npos);
+}
+
+TEST(Areas, ArePolygons) {
     const auto refusal = [](const std::string& text, double spacing_m = 50.0) {
         return rejected([&] { parse_area(text, "a", {0.0, {{spacing_m}}}); });
     };
     EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[1,2]})"),
-              "a: is a Point, which is no area; expected GeoJSON: one Polygon, alone, as feature or in a "
+              "a: is a Point, which is no area; expected GeoJSON: Polygons, alone, as features or in a "
               "FeatureCollection");
     EXPECT_EQ(refusal(geojson("")).substr(0, 32), "a: feature 1 has no outer ring; ");
-    EXPECT_EQ(refusal(geojson("[[8,47],[8.1,47]]")).substr(0, 29), "a: its polygon has 2 corners;");
-    EXPECT_EQ(refusal("<kml/>"), "a: has 0 polygons; expected one polygon, in GeoJSON or KML");
-    EXPECT_EQ(refusal("<kml><outerBoundaryIs><LinearRing><coordinates>8,x</coordinates></LinearRing>"
-                      "</outerBoundaryIs></kml>"),
+    EXPECT_EQ(refusal(geojson("[[8,47],[8.1,47]]")).substr(0, 29), "a: a polygon has 2 corners; e");
+    EXPECT_EQ(refusal("<kml/>"), "a: has no polygon to fly over; expected polygons, in GeoJSON or KML");
+    EXPECT_EQ(refusal("<kml><Polygon><outerBoundaryIs><LinearRing><coordinates>8,x</coordinates></LinearRing>"
+                      "</outerBoundaryIs></Polygon></kml>"),
               "a: a place '8,x'; expected longitude,latitude in degrees");
+    std::string corners;
+    for (int i = 0; i < 301; ++i) corners += fmt::format("{}[8.002{:03},47.001]", i == 0 ? "" : ",", i);
+    EXPECT_NE(
+        refusal(geojson(fmt::format("{},[{}]", ring, corners))).find("have 301 corners; draw them with at most 300"),
+        std::string::npos);
     EXPECT_NE(refusal(geojson(ring), 5000.0).find("no lines 5000 m apart"), std::string::npos);
     EXPECT_NE(refusal(geojson(ring), 1e-9).find("or more than 5000"), std::string::npos);
 }

@@ -4,6 +4,7 @@
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <utility>
@@ -129,8 +130,37 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
               optional_key{}));
 }
 
+Fields<FlownTrack> record_fields(const FlownTrack*) {
+    using R = FlownTrack;
+    const auto rounded = [](const std::vector<double> R::*column, double scale) {
+        return [column, scale](const R& track) {
+            std::vector<std::optional<double>> values;
+            for (const double value : track.*column)
+                values.push_back(std::isnan(value) ? std::nullopt : std::optional(std::round(value * scale) / scale));
+            return values;
+        };
+    };
+    const auto degrees = [rounded](const std::vector<double> R::*column) {
+        constexpr double scale = 1e7;
+        return [column, round = rounded(column, scale)](const R& track) {
+            return (track.*column).empty() ? std::nullopt : std::optional(round(track));
+        };
+    };
+    constexpr double tenths = 10.0;
+    return {field("time_s", rounded(&R::time_s, tenths), "since the mission began"),
+            field("east_m", rounded(&R::east_m, tenths), "from the start of the path"),
+            field("north_m", rounded(&R::north_m, tenths), "likewise"),
+            field("latitude_deg", degrees(&R::latitude_deg), "null: the path is in metres from an unknown place"),
+            field("longitude_deg", degrees(&R::longitude_deg), "likewise"),
+            field("soc_percent", rounded(&R::soc_percent, tenths), "charge there; null: the battery has failed"),
+            field("return_index", &R::return_index, "of the point where the way home begins; null: no pack is changed"),
+            field("wind_m_per_s", at(&R::wind, &path::Wind::speed_m_per_s), "speed of the wind"),
+            field("wind_from_deg", at(&R::wind, &path::Wind::from_deg), "where it comes from, clockwise from north")};
+}
+
 Fields<PackFlight> record_fields(const PackFlight*) {
     using R = PackFlight;
+    const auto track = [](const R& r) { return flown_track(setup_of(r.mission), r.flown.simulation); };
     const auto schedule = [](const R& flight) {
         std::vector<Json> segments;
         for (const auto& segment : flight.flown.schedule)
@@ -149,11 +179,13 @@ Fields<PackFlight> record_fields(const PackFlight*) {
         field("cruise_to_s", &R::cruise_to_s, "the same", column{"to [s]"}, csv_column{}),
         field("largest_to_s", &R::largest_to_s, "from where this pack could still return with the reserve",
               column{"at most [s]"}, csv_column{}),
+        field("margin_percent", &R::margin_percent, "above the reserve, for the probability", optional_key{}),
         field("return_from", &R::return_from, "element of the path and its completed part; empty: the end, or no path",
               column_if_any("returns from"), csv_column{}),
         field("return_east_m", &R::return_east_m, "from the start of the path; null: the same", csv_column{}),
         field("return_north_m", &R::return_north_m, "the same", csv_column{}),
         embedded([](const R& r) { return &r.flown.simulation.summary; }),
+        field("track", track, "of the cruise along its path"),
         field("runs", schedule, "schedule: from and to since the phase began"));
 }
 
@@ -163,6 +195,7 @@ Fields<PackFlights> record_fields(const PackFlights*) {
     return list_fields<R>(
         field("packs", stated, "number of packs of the mission"),
         field("packs_needed", &R::needed, "null: no number of packs is enough"),
+        field("probability", &R::probability, "of each flight to keep the reserve", optional_key{}),
         field("on_ground_s", &R::on_ground_s, "between the flights; part of the duration"),
         embedded(&R::total, {"schedule", "depleted_at_s", "cut_off_at_s", "delivered_energy_wh"}),
         field("flights", &R::flights, "one with each pack; final_soc_percent above is the least of them"));

@@ -27,6 +27,7 @@ namespace flightwatt::mission {
 Fields<UncertaintySources> record_fields(const UncertaintySources*);
 Fields<EstimatedLanding> record_fields(const EstimatedLanding*);
 Fields<MissionSummary> record_fields(const MissionSummary*);
+Fields<FlownTrack> record_fields(const FlownTrack*);
 Fields<PackFlight> record_fields(const PackFlight*);
 Fields<PackFlights> record_fields(const PackFlights*);
 }  // namespace flightwatt::mission

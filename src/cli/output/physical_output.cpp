@@ -150,6 +150,8 @@ Fields<PhysicalFit> record_fields(const PhysicalFit*) {
             field("bin_s", at(&R::model, &M::bin_s), "mean duration of a bin"),
             field("samples", at(&R::model, &M::samples), "power samples"),
             field("airspeed_m_per_s", at(&R::model, &M::airspeed_m_per_s, range), "range of the airspeed"),
+            field("airspeed_sd_m_per_s", at(&R::model, &M::airspeed_sd_m_per_s),
+                  "error of an estimated airspeed; null: measured"),
             field("climb_m_per_s", at(&R::model, &M::climb_m_per_s, range), "range of the climb rate"),
             field("mean_airspeed_m_per_s", at(&R::model, &M::mean_airspeed_m_per_s), "mean airspeed"),
             field("hold_out", cli::error_basis, "`mean power of phases`, or `bins` of a single flight"),

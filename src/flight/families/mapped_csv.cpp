@@ -234,6 +234,7 @@ class MappedRows {
 
     static std::string source_of(const MappedTrack& mapped, const std::vector<BoundColumn>& columns) {
         std::vector<std::string> names;
+        names.reserve(columns.size());
         for (const auto& column : columns) names.push_back(column.name);
         if (names.empty()) return "column map";
         return mapped.combine == Combine::norm ? fmt::format("|{}|", fmt::join(names, ", "))

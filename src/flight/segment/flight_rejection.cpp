@@ -148,9 +148,8 @@ std::string stays_on_ground(const FlightCandidate& c) {
 
 /// Whether energy height is gained within a window of flying speed.
 bool flies_by_airspeed(const FlightCandidate& c) {
-    const auto& airspeed = c.data.airspeed_m_per_s;
-    if (airspeed.empty()) return false;
-    const auto speed = resample(airspeed, c.grid.times_s(c.activity.span));
+    if (!c.data.airspeed_is_measured()) return false;
+    const auto speed = resample(c.data.airspeed_m_per_s, c.grid.times_s(c.activity.span));
     const auto altitude_m = part_of(c.grid.altitude_m, c.activity.span);
     const auto energy_height_m = [&](std::size_t i) {
         return altitude_m[i] + speed[i] * speed[i] / (2.0 * units::standard_gravity_m_per_s2);
@@ -281,7 +280,7 @@ std::string stands_still(const FlightCandidate& c) {
         by_position[i] = std::hypot(east_m[i] - east_m[i - steps], north_m[i] - north_m[i - steps]) / position_window_s;
     if (fast_speed(when_flown(by_position, c)) >= min_flight_m_per_s) return "";
     const double extent_m = std::max(spread_of(when_flown(east_m, c)), spread_of(when_flown(north_m, c)));
-    if (!c.data.airspeed_m_per_s.empty() && extent_m >= standing_extent_m) return "";
+    if (c.data.airspeed_is_measured() && extent_m >= standing_extent_m) return "";
     return fmt::format(
         "altitude shows a height of {:.0f} m, but the aircraft moves at {:.1f} m/s over ground, within {:.0f} m: not "
         "moved or carried",

@@ -174,6 +174,7 @@ std::vector<std::vector<const Monitor*>> packs_by_circuit(const std::vector<Moni
 
 std::string names_of(const std::vector<const Monitor*>& packs) {
     std::vector<std::string> names;
+    names.reserve(packs.size());
     for (const auto* pack : packs) names.push_back(pack->name);
     return fmt::format("{}", fmt::join(names, " and "));
 }
@@ -190,6 +191,7 @@ Track sum_of(std::vector<Device> devices, ChosenTrack& chosen) {
 
 std::vector<Device> devices_of(const std::vector<const Monitor*>& packs, Track Monitor::*member) {
     std::vector<Device> devices;
+    devices.reserve(packs.size());
     for (const auto* pack : packs) devices.push_back({pack->name, "", pack->*member, {}});
     return devices;
 }

@@ -32,7 +32,7 @@ class AircraftSender {
              {"custom_mode", state_or(data_.mode, time_s, 0.0)},
              {"mavlink_version", 3.0}});
         constexpr double airspeed_sensor = 16.0;
-        const double sensors = data_.airspeed_m_per_s.empty() ? 0.0 : airspeed_sensor;
+        const double sensors = data_.airspeed_is_measured() ? airspeed_sensor : 0.0;
         add(time_s, "SYS_STATUS",
             {{"onboard_control_sensors_present", sensors},
              {"onboard_control_sensors_enabled", sensors},

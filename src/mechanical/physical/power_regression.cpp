@@ -13,11 +13,10 @@ namespace {
 constexpr double min_eigenvalue = 1e-8;  // of the columns' products, each of length 1
 constexpr double prior_degrees_of_freedom = 3.0;
 
-/// From half a bin, where neighbours are nearly independent, to 20 minutes; twice as long at each second step.
-std::vector<double> correlations_s() {
+/// From half a bin, where neighbours are nearly independent, to 45 bins; twice as long at each second step.
+std::vector<double> correlations_s(double bin_s) {
     std::vector<double> grid(14);
-    for (std::size_t i = 0; i < grid.size(); ++i)
-        grid[i] = 0.5 * default_bin_s * std::pow(2.0, 0.5 * static_cast<double>(i));
+    for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = 0.5 * bin_s * std::pow(2.0, 0.5 * static_cast<double>(i));
     return grid;
 }
 
@@ -220,8 +219,17 @@ ColumnVector mean_coefficients(const PowerPosterior& posterior) {
     return mean;
 }
 
-PowerRegression::PowerRegression(std::span<const BinnedFlight> flights) : flights_(flights.size()) {
-    for (const double correlation_s : correlations_s()) {
+double usual_bin_s(std::span<const BinnedFlight> flights) {
+    constexpr double is_short = 2.0 / 3.0;
+    double longest_s = 0.0;
+    for (const auto& flight : flights)
+        for (const auto& bin : flight.bins) longest_s = std::max(longest_s, bin.duration_s);
+    return longest_s < is_short * default_bin_s ? longest_s : default_bin_s;
+}
+
+PowerRegression::PowerRegression(std::span<const BinnedFlight> flights)
+    : correlations_s_(correlations_s(usual_bin_s(flights))), flights_(flights.size()) {
+    for (const double correlation_s : correlations_s_) {
         auto& sums = by_correlation_.emplace_back();
         for (const auto& flight : flights) sums.push_back(accumulate_normal_equations(flight.bins, correlation_s));
     }
@@ -229,13 +237,12 @@ PowerRegression::PowerRegression(std::span<const BinnedFlight> flights) : flight
 
 std::optional<PowerPosterior> PowerRegression::posterior(const std::vector<int>& columns) const {
     PowerPosterior posterior;
-    const auto correlations = correlations_s();
     const auto sds = level_sds(flights_);
-    for (std::size_t i = 0; i < correlations.size(); ++i) {
+    for (std::size_t i = 0; i < correlations_s_.size(); ++i) {
         for (const double level_sd : sds) {
             auto fit = fit_gls(by_correlation_[i], columns, level_sd);
             if (!fit) return std::nullopt;
-            posterior.nodes.push_back({correlations[i], level_sd});
+            posterior.nodes.push_back({correlations_s_[i], level_sd});
             posterior.weights.push_back(fit->log_likelihood + log_prior(level_sd));
             posterior.fits.push_back(std::move(*fit));
         }

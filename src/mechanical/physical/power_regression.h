@@ -72,6 +72,9 @@ struct PowerPosterior {
 
 ColumnVector mean_coefficients(const PowerPosterior& posterior);
 
+/// default_bin_s, or the longest bin of flights that have only much shorter ones.
+double usual_bin_s(std::span<const BinnedFlight> flights);
+
 /// The normal equations of each flight for every correlation of the grid.
 class PowerRegression {
   public:
@@ -82,6 +85,7 @@ class PowerRegression {
     std::optional<PowerPosterior> posterior(const std::vector<int>& columns) const;
 
   private:
+    std::vector<double> correlations_s_;
     std::vector<std::vector<NormalEquations>> by_correlation_;
     std::size_t flights_ = 0;
 };

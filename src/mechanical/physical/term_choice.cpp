@@ -23,7 +23,7 @@ constexpr std::size_t blocks_of_single_flight = 5;
 
 /// Level sd and drift correlation of the cross-validation: rough values are enough to compare terms.
 constexpr double working_level_sd = level_prior_scale;
-constexpr double working_correlation_s = 2.0 * default_bin_s;
+constexpr double working_correlation_bins = 2.0;
 
 /// Means over a whole phase of a hold-out flight.
 struct HoldOutPhase {
@@ -49,8 +49,8 @@ struct Folds {
     const PowerRegression* regression = nullptr;  ///< of all flights
 };
 
-void add_bins(TermFold& fold, std::span<const FlightBin> bins) {
-    fold.flights.push_back(accumulate_normal_equations(bins, working_correlation_s));
+void add_bins(TermFold& fold, std::span<const FlightBin> bins, double correlation_s) {
+    fold.flights.push_back(accumulate_normal_equations(bins, correlation_s));
     const auto sums = accumulate_normal_equations(bins, 0.0);
     fold.uncorrelated.products += sums.products;
     fold.uncorrelated.responses += sums.responses;
@@ -82,6 +82,7 @@ Folds folds_of(std::span<const BinnedFlight> flights, const PowerRegression& reg
     made.payload_known = std::ranges::all_of(flights, &BinnedFlight::payload_known);
     made.rotors_known = std::ranges::all_of(flights, [](const auto& of) { return of.load.rotors.has_value(); });
     made.rotorcraft = static_cast<std::size_t>(std::ranges::count_if(flights, &BinnedFlight::is_rotorcraft));
+    const double correlation_s = working_correlation_bins * usual_bin_s(flights);
     if (flights.size() == 1) {
         const std::span bins(flights.front().bins);
         made.phases_decide = false;
@@ -89,14 +90,14 @@ Folds folds_of(std::span<const BinnedFlight> flights, const PowerRegression& reg
         for (std::size_t i = 0; i < made.folds.size(); ++i) {
             const auto first = bins.size() * i / made.folds.size();
             const auto last = bins.size() * (i + 1) / made.folds.size();
-            add_bins(made.folds[i], bins.subspan(first, last - first));
+            add_bins(made.folds[i], bins.subspan(first, last - first), correlation_s);
         }
         return made;
     }
     made.folds.resize(std::min(max_folds, flights.size()));
     for (std::size_t i = 0; i < flights.size(); ++i) {
         auto& fold = made.folds[i % made.folds.size()];
-        add_bins(fold, flights[i].bins);
+        add_bins(fold, flights[i].bins, correlation_s);
         const auto phases = phases_of(flights[i].bins);
         made.phases_decide = made.phases_decide && phases.size() > 1;
         fold.phases.insert(fold.phases.end(), phases.begin(), phases.end());

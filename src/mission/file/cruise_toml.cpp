@@ -17,6 +17,7 @@
 #include <cmath>
 #include <functional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -280,12 +281,12 @@ void require_one_file(const TomlTable& path) {
             throw InputError(path.where(key), fmt::format("{} belongs to {}", key, file), "add it, or leave this out");
 }
 
-/// Movements of the file that the path names; none without one.
-path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s, bool is_rotorcraft,
+/// Movements of the file that the path names; none without one. A flight plan has an origin and a ground.
+path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::PathDefaults& defaults,
                                MissionSetup& mission) {
     const path::AutopilotSettings settings{
-        optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"), airspeed_m_per_s,
-        is_rotorcraft};
+        optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"),
+        defaults.airspeed_m_per_s, is_rotorcraft};
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
         const auto file = named_file(path, "area");
@@ -302,6 +303,10 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s, b
     }
     const auto file = named_file(path, "flight_plan");
     const auto text = read_file(file);
+    try {
+        std::tie(defaults.local_origin, defaults.ground_m) = path::flight_plan_origin(text, file.string());
+    } catch (const InputError&) {  // it states none: its places are metres alone
+    }
     if (path.has("waypoint_order"))
         return {path::parse_flight_plan(text, file.string(), path.strings("waypoint_order"))};
     return path::parse_plan_blocks(text, file.string(), path.strings("blocks"), settings);
@@ -310,7 +315,7 @@ path::PlanEntries read_planned(const TomlTable& path, double airspeed_m_per_s, b
 /// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
 std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
     const bool is_rotorcraft = mission.mechanical && mission.mechanical->is_rotorcraft;
-    auto plan = read_planned(path, defaults.airspeed_m_per_s, is_rotorcraft, mission);
+    auto plan = read_planned(path, is_rotorcraft, defaults, mission);
     if (!path.has("airspeed_m_per_s") && plan.speed) {
         defaults.airspeed_m_per_s = plan.speed->m_per_s;
         mission.notes.push_back(
@@ -398,8 +403,9 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
     return limits;
 }
 
-path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& reading,
-                           const std::optional<TomlTable>& packs, MissionSetup& mission) {
+/// The path as it is drawn, and where it is.
+path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
+                            const std::optional<TomlTable>& packs, MissionSetup& mission) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",    "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start",  "waypoints",     "flight_plan",   "waypoint_order",  "blocks",
                               "radius_m",         "area",          "spacing_m",     "heading_deg",     "leg",
@@ -410,10 +416,12 @@ path::FlightPath read_path(const TomlTable& table, const MissionReadOptions& rea
     auto entries = read_entries(table, defaults, mission);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
-    auto path = build_path(entries, defaults);
+    path::PlannedPath plan;
+    plan.path = build_path(entries, defaults);
+    plan.origin = path_origin(entries, defaults);
     if (packs) mission.packs->home = read_home(*packs, entries, defaults);
-    if (reading.return_after_m) path = out_and_back(path, *reading.return_after_m, defaults.rates);
-    return path;
+    if (reading.return_after_m) plan.path = out_and_back(plan.path, *reading.return_after_m, defaults.rates);
+    return plan;
 }
 
 }  // namespace
@@ -495,8 +503,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     apply_precedence_of_path(mission_table, mission);
-    path::PlannedPath plan;
-    plan.path = read_path(*table, reading, mission_table.optional_table("packs"), mission);
+    auto plan = read_path(*table, reading, mission_table.optional_table("packs"), mission);
     plan.wind = read_wind(mission_table);
     if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
     plan.power = power_model(mission_table, *table, plan.wind, mission);

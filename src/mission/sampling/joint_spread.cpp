@@ -73,6 +73,7 @@ double share_at(double drawn, double degrees_of_freedom, double confidence) {
     const double flights = degrees_of_freedom + 1.0;
     const double t = quantile(complement(Student(degrees_of_freedom), drawn)) * std::sqrt(flights + 1.0);
     std::vector<double> shifted;
+    shifted.reserve(nodes);
     const boost::math::chi_squared_distribution<double, Policy> squares(degrees_of_freedom);
     for (int i = 0; i < nodes; ++i)
         shifted.push_back(t * std::sqrt(quantile(squares, (i + 0.5) / nodes) / degrees_of_freedom));

@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "base/toml_reader.h"
+#include "path/plans/fence.h"
 #include "path/plans/json_text.h"
 #include "path/plans/patterns.h"
 
@@ -32,11 +33,6 @@ struct MissionItems {
     Location where;
     std::optional<PlannedSpeed> speed = {};
 };
-
-// MAV_CMD
-constexpr int nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18, nav_loiter_time = 19,
-              nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31, nav_spline = 82,
-              nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177, change_speed = 178;
 
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
@@ -365,7 +361,10 @@ std::vector<double> item_numbers(const std::string& line, const Location& where)
 
 PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
     QgcReader reader(file, settings.is_rotorcraft);
-    return fly_items(reader.read(parse_json(text, file, "expected a plan of QGroundControl")), settings);
+    const auto json = parse_json(text, file, "expected a plan of QGroundControl");
+    auto plan = fly_items(reader.read(json), settings);
+    for (auto& note : fence_notes(json, plan.entries)) plan.not_flown.push_back(std::move(note));
+    return plan;
 }
 
 PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings) {

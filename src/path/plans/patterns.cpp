@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,40 +14,51 @@ double scalar_product(const LocalPosition& a, const LocalPosition& b) {
     return a.east_m * b.east_m + a.north_m * b.north_m;
 }
 
-double distance_m(const LocalPosition& a, const LocalPosition& b) {
-    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
-}
-
 LocalPosition direction(double course_deg) { return moved({}, 1.0, course_deg); }
 
 }  // namespace
 
-LinedPolygon::LinedPolygon(const std::vector<LocalPosition>& polygon, double course_deg)
-    : polygon_(polygon), along_(direction(course_deg)), across_(direction(course_deg + 90.0)) {
-    const auto offset = [&](const LocalPosition& corner) { return right_of(corner); };
+CourseAxes axes_of(double course_deg) { return {direction(course_deg), direction(course_deg + 90.0)}; }
+
+CoursePosition along_and_across(const LocalPosition& place, const CourseAxes& axes) {
+    return {scalar_product(place, axes.along), scalar_product(place, axes.right)};
+}
+
+CoursePosition along_and_across(const LocalPosition& place, double course_deg) {
+    return along_and_across(place, axes_of(course_deg));
+}
+
+LocalPosition place_at(const CoursePosition& position, double course_deg) {
+    const auto [along, right] = axes_of(course_deg);
+    return {position.across_m * right.east_m + position.along_m * along.east_m,
+            position.across_m * right.north_m + position.along_m * along.north_m};
+}
+
+std::vector<double> line_crossings(const Polygon& polygon, double course_deg, double offset_m) {
+    const auto axes = axes_of(course_deg);
+    std::vector<double> crossings;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto a = along_and_across(polygon[i], axes);
+        const auto b = along_and_across(polygon[(i + 1) % polygon.size()], axes);
+        if ((a.across_m <= offset_m) == (b.across_m <= offset_m)) continue;
+        const double part = (offset_m - a.across_m) / (b.across_m - a.across_m);
+        crossings.push_back(a.along_m + part * (b.along_m - a.along_m));
+    }
+    std::ranges::sort(crossings);
+    return crossings;
+}
+
+LinedPolygon::LinedPolygon(const Polygon& polygon, double course_deg) : polygon_(polygon), course_deg_(course_deg) {
+    const auto offset = [&](const LocalPosition& corner) { return along_and_across(corner, course_deg).across_m; };
     const auto [left, right] = std::ranges::minmax(polygon, {}, offset);
     left_m_ = offset(left);
     right_m_ = offset(right);
 }
 
-double LinedPolygon::right_of(const LocalPosition& place) const { return scalar_product(place, across_); }
-
 std::optional<SurveyLine> LinedPolygon::line_at(double x) const {
-    std::vector<double> crossings;
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-        const auto& a = polygon_[i];
-        const auto& b = polygon_[(i + 1) % polygon_.size()];
-        const double xa = right_of(a), xb = right_of(b);
-        if ((xa <= x) == (xb <= x)) continue;
-        const double part = (x - xa) / (xb - xa);
-        crossings.push_back(scalar_product(a, along_) + part * (scalar_product(b, along_) - scalar_product(a, along_)));
-    }
+    const auto crossings = line_crossings(polygon_, course_deg_, x);
     if (crossings.size() < 2) return std::nullopt;
-    const auto [low, high] = std::ranges::minmax(crossings);
-    const auto place = [&](double y) {
-        return LocalPosition{x * across_.east_m + y * along_.east_m, x * across_.north_m + y * along_.north_m};
-    };
-    return SurveyLine{place(low), place(high)};
+    return SurveyLine{place_at({crossings.front(), x}, course_deg_), place_at({crossings.back(), x}, course_deg_)};
 }
 
 std::vector<SurveyLine> LinedPolygon::lines_between(double left_m, double right_m, double spacing_m) const {
@@ -60,7 +70,7 @@ std::vector<SurveyLine> LinedPolygon::lines_between(double left_m, double right_
     return lines;
 }
 
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
                                      const Location& where) {
     const LinedPolygon lined(polygon, course_deg);
     auto lines = lined.lines_between(lined.left_m(), lined.right_m(), spacing_m);
@@ -70,12 +80,23 @@ std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, 
 
 bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at) {
     const auto nearest_m = [&](const SurveyLine& line) {
-        return std::min(distance_m(at, line.from), distance_m(at, line.to));
+        return std::min(distance_between_m(at, line.from), distance_between_m(at, line.to));
     };
     return nearest_m(lines.back()) < nearest_m(lines.front());
 }
 
-double length_m(const SurveyLine& line) { return distance_m(line.from, line.to); }
+std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPosition& at) {
+    bool is_back = distance_between_m(at, lines.front().to) < distance_between_m(at, lines.front().from);
+    for (auto& [from, to] : lines) {
+        if (is_back) std::swap(from, to);
+        is_back = !is_back;
+    }
+    return lines;
+}
+
+double distance_between_m(const LocalPosition& a, const LocalPosition& b) {
+    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
+}
 
 double course_between(const LocalPosition& from, const LocalPosition& to) {
     const auto way = to - from;
@@ -113,7 +134,7 @@ void PatternWriter::oval(const LocalPosition& first, const LocalPosition& second
 
 void PatternWriter::eight(const LocalPosition& centre, const LocalPosition& around, double radius_m) const {
     const double course_deg = course_between(centre, around);
-    const double offset_m = std::clamp(distance_m(centre, around), 1.0, 2.0 * std::abs(radius_m));
+    const double offset_m = std::clamp(distance_between_m(centre, around), 1.0, 2.0 * std::abs(radius_m));
     const auto fly_beside = [&](const LocalPosition& middle) { fly_to(moved(middle, radius_m, course_deg - 90.0)); };
     for (const double side : {1.0, -1.0}) {
         const auto middle = moved(centre, side * offset_m, course_deg);
@@ -156,6 +177,14 @@ void PatternWriter::zamboni(const Zamboni& survey) const {
     }
 }
 
+void PatternWriter::turn_onto(const SurveyLine& before, const LocalPosition& next,
+                              const std::optional<double>& spacing_m) const {
+    const double course_deg = course_between(before.from, before.to);
+    const auto [ahead_m, right_m] = along_and_across(next - before.to, course_deg);
+    if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
+    turn(0.5, std::copysign(spacing_m.value_or(std::abs(right_m)), right_m) / 2.0);
+}
+
 void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
     if (begins_with_last(lines, at)) std::ranges::reverse(lines);
     lines_in_order(std::move(lines), spacing_m, at);
@@ -163,23 +192,12 @@ void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, cons
 
 void PatternWriter::lines_in_order(std::vector<SurveyLine> lines, const std::optional<double>& spacing_m,
                                    const LocalPosition& at) const {
-    bool is_back = distance_m(at, lines.front().to) < distance_m(at, lines.front().from);
+    lines = alternating(std::move(lines), at);
     auto named = entries.size();  // the entries of a line and of the turn before it have its number
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        auto& [from, to] = lines[i];
-        if (is_back) std::swap(from, to);
-        is_back = !is_back;
-        if (i > 0) {
-            const auto& before = lines[i - 1];
-            const double course_deg = course_between(before.from, before.to);
-            const auto next = from - before.to;
-            const double ahead_m = scalar_product(next, direction(course_deg));
-            if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
-            const double aside_m = scalar_product(next, direction(course_deg + 90.0));
-            turn(0.5, std::copysign(spacing_m.value_or(std::abs(aside_m)), aside_m) / 2.0);
-        }
-        fly_to(from);
-        fly_to(to);
+        if (i > 0) turn_onto(lines[i - 1], lines[i].from, spacing_m);
+        fly_to(lines[i].from);
+        fly_to(lines[i].to);
         for (; named < entries.size(); ++named) {
             entries[named].name += fmt::format(" (line {})", i + 1);
             entries[named].survey_line = i + 1;

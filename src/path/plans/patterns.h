@@ -16,10 +16,34 @@ struct SurveyLine {
     LocalPosition to;
 };
 
+/// Corners of a polygon, each once.
+using Polygon = std::vector<LocalPosition>;
+
+/// A position along a course from the origin, and across it to the right.
+struct CoursePosition {
+    double along_m = 0.0;
+    double across_m = 0.0;
+};
+
+/// The directions of a course and to its right, of length 1.
+struct CourseAxes {
+    LocalPosition along;
+    LocalPosition right;
+};
+
+CourseAxes axes_of(double course_deg);
+CoursePosition along_and_across(const LocalPosition& place, const CourseAxes& axes);
+CoursePosition along_and_across(const LocalPosition& place, double course_deg);
+LocalPosition place_at(const CoursePosition& position, double course_deg);
+
+/// Returns where a line crosses a polygon, by the distances along it, in their order: it has the course `course_deg` and
+/// passes the origin `offset_m` to its right.
+std::vector<double> line_crossings(const Polygon& polygon, double course_deg, double offset_m);
+
 /// Lines over a polygon, all in one direction, from left to right. In a concave polygon a line may cross the outside.
 class LinedPolygon {
   public:
-    LinedPolygon(const std::vector<LocalPosition>& polygon, double course_deg);
+    LinedPolygon(const Polygon& polygon, double course_deg);
 
     double left_m() const { return left_m_; }
     double right_m() const { return right_m_; }
@@ -30,25 +54,25 @@ class LinedPolygon {
     std::vector<SurveyLine> lines_between(double left_m, double right_m, double spacing_m) const;
 
   private:
-    double right_of(const LocalPosition& place) const;
-
-    const std::vector<LocalPosition>& polygon_;
-    LocalPosition along_;
-    LocalPosition across_;
+    const Polygon& polygon_;
+    double course_deg_;
     double left_m_ = 0.0;
     double right_m_ = 0.0;
 };
 
 /// Returns parallel lines over a polygon, all in the direction `course_deg`, from left to right. The first is half of
-/// the spacing within the polygon. Throws InputError at `where` if no line fits, or more than 5000.
-std::vector<SurveyLine> survey_lines(const std::vector<LocalPosition>& polygon, double spacing_m, double course_deg,
+/// the spacing within the polygon. Throws InputError at `where` if
+/// no line fits, or more than 5000.
+std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
                                      const Location& where);
 
 /// Returns whether the last line of a survey is nearer to a place than the first, and is flown first.
 bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at);
 
-/// Returns the length of a line [m].
-double length_m(const SurveyLine& line);
+/// Returns lines in alternating directions, the first one from the end that is nearer to `at`.
+std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPosition& at);
+
+double distance_between_m(const LocalPosition& a, const LocalPosition& b);
 
 /// Returns the course [degrees] from one place to another.
 double course_between(const LocalPosition& from, const LocalPosition& to);
@@ -91,7 +115,11 @@ struct PatternWriter {
     /// Appends a Zamboni survey.
     void zamboni(const Zamboni& survey) const;
 
-    /// Appends the lines, in alternating directions, beginning with the line and the end that are nearest to `at`.
+    /// Appends half a circle from the end of a line towards the beginning of the next one, as wide as the spacing, or
+    /// without one as the lines are apart. Before it the aircraft continues until that is abeam.
+    void turn_onto(const SurveyLine& before, const LocalPosition& next, const std::optional<double>& spacing_m) const;
+
+    /// Appends the lines, beginning with the line that is nearest to `at`, as lines_in_order.
     void survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const;
 
     /// Appends the lines in this order, in alternating directions, beginning with the end that is nearest to `at`.

@@ -4,7 +4,6 @@
 #include "cli/output/mission_output.h"
 #include "cli/output/replay_output.h"
 #include "mission/mission_summary.h"
-#include "path/trajectory.h"
 #include "report/document/columns.h"
 #include "report/document/mission_card.h"
 #include "report/document/quality_of_service.h"
@@ -135,51 +134,12 @@ Json elements_json(const path::PlannedPath& plan) {
     return elements;
 }
 
-/// The charge at a time of the simulation; NaN after the battery's end.
-double charge_percent(const mission::Simulation& simulation, double time_s) {
-    const auto& rows = simulation.curve.rows;
-    if (rows.empty() || time_s > mission::powered_end_s(simulation.summary)) return std::nan("");
-    const auto after = std::ranges::lower_bound(rows, time_s, {}, &mission::SocRow::time_s);
-    if (after == rows.begin()) return after->soc_percent;
-    if (after == rows.end()) return rows.back().soc_percent;
-    const auto& [before, next] = std::pair(*std::prev(after), *after);
-    const double part = next.time_s > before.time_s ? (time_s - before.time_s) / (next.time_s - before.time_s) : 1.0;
-    return std::lerp(before.soc_percent, next.soc_percent, part);
-}
-
 /// The path of the cruise with the charge along it; null without one.
 Json path_json(const SimulatedMission& simulated) {
-    const auto& setup = simulated.mission.setup;
-    if (!setup.cruise_path) return nullptr;
-    const auto& plan = *setup.cruise_path->plan;
-    constexpr double step_s = 2.0;
-    const auto flown = compute_trajectory(plan.path, plan.wind, path::InfeasibleLegPolicy::crawl);
-    const double lift_off_to_cruise_s = mission::timeline_of(setup.duration_s).start_s[flight::Phase::cruise];
-    Json path{{"elements", elements_json(plan)},
-              {"time_s", Json::array()},
-              {"east_m", Json::array()},
-              {"north_m", Json::array()},
-              {"soc_percent", Json::array()}};
-    const auto add = [&](std::size_t element, double part, double cruise_s) {
-        const auto place = local_position_at(plan.path, {element, part});
-        path["time_s"].push_back(rounded_json(lift_off_to_cruise_s + cruise_s, 1));
-        path["east_m"].push_back(rounded_json(place.east_m, 1));
-        path["north_m"].push_back(rounded_json(place.north_m, 1));
-        path["soc_percent"].push_back(
-            rounded_json(charge_percent(simulated.simulation, lift_off_to_cruise_s + cruise_s), 1));
-    };
-    double start_s = 0.0;
-    if (!flown.element_s.empty()) add(0, 0.0, 0.0);
-    for (std::size_t e = 0; e < flown.element_s.size(); ++e) {
-        const double element_s = flown.element_s[e];
-        const bool is_round = std::holds_alternative<path::Circles>(plan.path.elements[e].shape);
-        const int count = std::clamp(static_cast<int>(element_s / step_s), 1, is_round ? 400 : 20);
-        for (int i = 1; i <= count; ++i) {
-            const double part = static_cast<double>(i) / count;
-            add(e, part, start_s + part * element_s);
-        }
-        start_s += element_s;
-    }
+    const auto track = flown_track(simulated.mission.setup, simulated.simulation);
+    if (!track) return nullptr;
+    auto path = record_json(*track);
+    path["elements"] = elements_json(*simulated.mission.setup.cruise_path->plan);
     return path;
 }
 
@@ -257,6 +217,7 @@ std::string missions_headline(const Findings& findings) {
 Json missions_json(const Findings& findings, LatexTables& tables) {
     const auto& missions = findings.missions;
     std::vector<mission::MissionSummary> summaries;
+    summaries.reserve(missions.size());
     for (const auto& simulated : missions) summaries.push_back(simulated.simulation.summary);
     const auto ranking = cli::ranked_missions(ranked(summaries));
     tables.add({table_of(ranking), "Missions by final state of charge", "tab:missions"});

@@ -77,7 +77,7 @@ void RowCollector::append(const Row& row) {
 }
 
 /// The row's time is right.
-void RowCollector::set_time(Row row) {
+void RowCollector::set_time(const Row& row) {
     constexpr std::size_t few = 10;  // events of the start
     if (std::isnan(last_s_) && early_ > few)
         skips_.add({SkipReason::no_time, without_time}, row.time_s, first_early_ + 1, early_);

@@ -82,7 +82,7 @@ class RowCollector {
     };
 
     void append(const Row& row);
-    void set_time(Row row);
+    void set_time(const Row& row);
     void drop_pending();
     void place_untimed(double next_s);
     void count_gap(double time_s);

@@ -210,6 +210,7 @@ std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesyste
             for (auto& vehicle : vehicles) vehicle.skip(offset, skipped);
         });
     std::vector<AutopilotLog> logs;
+    logs.reserve(vehicles.size());
     for (auto& vehicle : vehicles) logs.push_back(vehicle.take());
     return logs;
 }

@@ -299,7 +299,22 @@ export interface MissionSlider {
   places: { line: number; column: number }[];
 }
 
-export interface MissionPath {
+/// A cruise as it is flown, with its turns, times since lift-off and the charge then (null: the battery has failed).
+export interface FlownTrack {
+  time_s: number[];
+  east_m: number[];
+  north_m: number[];
+  /// null: the path is in metres from an unknown place.
+  latitude_deg?: number[] | null;
+  longitude_deg?: number[] | null;
+  soc_percent: (number | null)[];
+  /// The point where the way home to the next pack begins.
+  return_index?: number | null;
+  wind_m_per_s?: number;
+  wind_from_deg?: number;
+}
+
+export interface MissionPath extends FlownTrack {
   elements: {
     name: string;
     kind: "leg" | "circles" | "hold" | "turn";
@@ -311,11 +326,6 @@ export interface MissionPath {
     climb_m_per_s: number;
     mechanical_w: number;
   }[];
-  /// The path as flown, with times since lift-off and the charge then (null: the battery has failed).
-  time_s: number[];
-  east_m: number[];
-  north_m: number[];
-  soc_percent: (number | null)[];
 }
 
 /// The charge at landing with one setting of the software throughout.
@@ -378,6 +388,7 @@ export interface PackMission extends Omit<MissionSummary, "schedule" | "delivere
     return_from: string;
     return_east_m: number | null;
     return_north_m: number | null;
+    track?: FlownTrack | null;
     runs: { phase: PhaseName; from_s: number; to_s: number; run: Record<string, Record<string, number>> }[];
   })[];
 }

@@ -154,6 +154,9 @@ test("an area is flown, and has a verdict with its command", { skip, ...patience
     await page.locator("[role=alert]").allTextContents().then(String),
   );
   assert.match(await page.textContent(".command code"), /new-mission .*--plan field.geojson/);
+  const flown = page.locator(".map path.on-c1, .map path.on-c2");
+  assert.ok((await flown.count()) > 0, "what is flown is drawn, coloured by the charge");
+  assert.match(await page.textContent(".chart-key"), /charge left/);
 });
 
 test("the second visit has the logs, and Forget all has none", { skip, ...patience }, async (t) => {

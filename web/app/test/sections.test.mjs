@@ -83,6 +83,18 @@ test("a path changes its colour where the charge passes a step, without a gap", 
   assert.deepEqual(app.pieces({ ...path, soc_percent: [15, 15, 15, 15] }, 20).map(({ name }) => name), ["below the reserve"]);
 });
 
+test("flights with several packs are drawn from home, with where each returns and lands", () => {
+  const flight = (pack, east_m, rest = {}) => ({ pack, track: { time_s: [0, 1, 2], east_m, north_m: [0, 0, 0], soc_percent: [90, 70, 50], wind_m_per_s: 4, wind_from_deg: 250, ...rest } });
+  const drawn = app.packTracks([flight(1, [0, 100, 50], { return_index: 1 }), flight(2, [0, 50, 150]), { pack: 3, track: null }], 20);
+  assert.deepEqual(drawn.wind, { m_per_s: 4, from_deg: 250 });
+  assert.deepEqual(drawn.spots.map(({ name }) => name), ["pack 1 returns: 70 %", "pack 1 lands: 50 %", "pack 2 lands: 50 %"]);
+  const metres = (place) => Math.round(place[1] * 111195);
+  assert.deepEqual(drawn.spots.map(({ place }) => metres(place)), [100, 50, 200]);
+  const degrees = app.packTracks([flight(1, [0, 1, 2], { latitude_deg: [43, 43, 43], longitude_deg: [1, 1.1, 1.2] })], 20);
+  assert.deepEqual(degrees.spots.at(-1).place, [43, 1.2]);
+  assert.deepEqual(app.packTracks([{ pack: 1 }], 20), { tracks: [], spots: [], wind: null });
+});
+
 test("parameters of an autopilot are shown without their comments", () => {
   assert.equal(app.parametersOf("# why\nBATT_LOW_MAH 2030\n\nBATT_CRT_MAH 1210\n"), "BATT_LOW_MAH 2030\nBATT_CRT_MAH 1210");
   assert.equal(app.parametersOf('<!--\nwhy\n-->\n<define name="A" value="1"/>'), '<define name="A" value="1"/>');

@@ -3,6 +3,7 @@ import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks"
 import { Card, Command, Facts, Folded, Mark, save, type Grade } from "../ui/basics";
 import { chance, distance, duration, number, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
+import { ChargeKey, packTracks } from "../sections/mission_map";
 import { TrackMap, type Place, type Spot, type Track } from "../ui/map";
 import { Plot } from "../ui/plot";
 import { Slider } from "../ui/slider";
@@ -228,10 +229,20 @@ interface MapProps {
   shape: PlanShape;
   flown: Place[];
   drawing: Place[] | null;
+  plan: FlownPlan | null;
   onPlace: (place: Place) => void;
 }
 
-function PlanMap({ shape, flown, drawing, onPlace }: MapProps) {
+/// The tracks of a plan as it is flown, which are drawn where the earth's place of its path is known.
+function flownTracks(plan: FlownPlan | null) {
+  const simulation = plan?.curve.simulation;
+  const flights = simulation?.flights ?? [{ pack: 1, track: plan?.path?.track }];
+  const known = flights.filter(({ track }) => track?.latitude_deg);
+  return { ...packTracks(known, simulation?.reserve_soc_percent ?? 0), several: known.length > 1 };
+}
+
+function PlanMap({ shape, flown, drawing, plan, onPlace }: MapProps) {
+  const way = useMemo(() => flownTracks(plan), [plan]);
   const tracks = useMemo((): Track[] => {
     if (drawing) return [
       { name: "flown before", colour: "ink3", places: flown, weight: 1.5 },
@@ -239,25 +250,33 @@ function PlanMap({ shape, flown, drawing, onPlace }: MapProps) {
     ];
     return [
       ...shape.areas.map((places): Track => ({ name: "area", colour: "link", places, closed: true })),
-      ...shape.lines.map((places): Track => ({ name: "plan", colour: "cruise", places })),
+      ...(way.tracks.length > 0
+        ? way.tracks
+        : shape.lines.map((places): Track => ({ name: "plan", colour: "cruise", places }))),
     ];
-  }, [shape, flown, drawing]);
+  }, [shape, flown, drawing, way]);
   const spots = useMemo((): Spot[] => {
     if (drawing) return drawing.map((place, i) => ({ name: `corner ${i + 1}`, colour: "link", place }));
     const first = shape.home ?? shape.lines[0]?.[0];
-    const named = shape.named.map(({ name, place }): Spot => ({ name, colour: "cruise", place }));
+    const named = [
+      ...shape.named.map(({ name, place }): Spot => ({ name, colour: "cruise", place })),
+      ...(way.several ? way.spots : []),
+    ];
     return first ? [{ name: "home", colour: "ink", place: first }, ...named] : named;
-  }, [shape, drawing]);
+  }, [shape, drawing, way]);
   const click = useCallback((place: Place) => drawing && onPlace(place), [drawing, onPlace]);
-  return <TrackMap
+  const map = <TrackMap
     tracks={tracks}
     spots={spots}
+    wind={drawing ? null : way.wind}
     still={drawing != null && drawing.length > 0}
     view={flown[0]}
     height={380}
     onClick={click}
-    description="The plan on a map, north at the top."
+    description="The plan on a map, north at the top, coloured by the charge that is left."
   />;
+  if (drawing || !plan || way.tracks.length === 0) return map;
+  return <>{map}<ChargeKey reserve={plan.curve.simulation.reserve_soc_percent} /></>;
 }
 
 function SoftwareStrip({ curve }: { curve: Curve }) {
@@ -491,7 +510,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
                 </span>
               )
             }>
-              <PlanMap shape={shape} flown={places} drawing={drawing} onPlace={onPlace} />
+              <PlanMap shape={shape} flown={places} drawing={drawing} plan={shown} onPlace={onPlace} />
               {shown && !drawing && <PlanFacts flown={shown} />}
             </Card>
           )}

@@ -1,8 +1,8 @@
 // The path of a mission on a map, coloured by what is left of the charge, and its elements as a table.
 import { useMemo } from "preact/hooks";
-import { placesOf, type MissionDocument, type MissionPath } from "../documents";
+import { placesOf, type FlownTrack, type MissionDocument, type MissionPath } from "../documents";
 import { distance, duration, number, power, quantity } from "../ui/format";
-import { TrackMap, type Spot, type Track } from "../ui/map";
+import { TrackMap, type Place, type Spot, type Track, type Wind } from "../ui/map";
 import { Opened } from "../ui/opened";
 import { Table, type Column } from "../ui/table";
 import { capital } from "./words";
@@ -19,7 +19,7 @@ function toneOf(soc: number | null, reserve: number): string {
 const step_words: Record<string, string> = { c1: "80 to 100 % left", c2: "60 to 80 % left", c3: "40 to 60 % left", c4: "below 40 % left", c5: "below the reserve" };
 
 /// Returns the path in pieces of one colour; each begins where the last ended.
-export function pieces(path: MissionPath, reserve: number): Track[] {
+export function pieces(path: FlownTrack, reserve: number): Track[] {
   const places = placesOf(path);
   const tracks: Track[] = [];
   for (let i = 0; i < places.length; ++i) {
@@ -34,6 +34,50 @@ export function pieces(path: MissionPath, reserve: number): Track[] {
     last.places.push(place);
   }
   return tracks.filter((track) => track.places.length > 1);
+}
+
+/// Returns the wind of a path; null for calm air.
+export function windOf(path: FlownTrack): Wind | null {
+  return path.wind_m_per_s ? { m_per_s: path.wind_m_per_s, from_deg: path.wind_from_deg ?? 0 } : null;
+}
+
+/// A flight with one of several packs, on a map.
+interface DrawnFlight {
+  pack: number;
+  track?: FlownTrack | null;
+}
+
+/// Returns the places of flights in metres from the start of the path: each but the first begins at home.
+function shifted(track: FlownTrack, home: FlownTrack): FlownTrack {
+  const [east, north] = [home.east_m[home.east_m.length - 1] ?? 0, home.north_m[home.north_m.length - 1] ?? 0];
+  return { ...track, east_m: track.east_m.map((value) => value + east), north_m: track.north_m.map((value) => value + north) };
+}
+
+/// Returns the tracks of flights, and their landings and the places that they return from.
+export function packTracks(flights: DrawnFlight[], reserve: number): { tracks: Track[]; spots: Spot[]; wind: Wind | null } {
+  const first = flights[0]?.track;
+  const drawn = flights.flatMap(({ track, ...flight }, i) => (track && first ? [{ ...flight, track: i > 0 ? shifted(track, first) : track }] : []));
+  const spots = drawn.flatMap(({ track, pack }): Spot[] => {
+    const places = placesOf(track);
+    const last = places[places.length - 1];
+    const from = track.return_index ?? -1;
+    return [
+      ...(places[from] ? [{ name: `pack ${pack} returns: ${quantity(track.soc_percent[from] ?? null, 0, "%")}`, is_named: true, colour: "cruise", place: places[from] as Place }] : []),
+      ...(last ? [{ name: `pack ${pack} lands: ${quantity(track.soc_percent[places.length - 1] ?? null, 0, "%")}`, colour: "landing", place: last }] : []),
+    ];
+  });
+  return { tracks: drawn.flatMap(({ track }) => pieces(track, reserve)), spots, wind: drawn[0] ? windOf(drawn[0].track) : null };
+}
+
+export function ChargeKey({ reserve }: { reserve: number }) {
+  return (
+    <p class="chart-key">
+      <span>charge left:</span>
+      {[["c1", "80 to 100 %"], ["c2", "60 to 80 %"], ["c3", "40 to 60 %"], ["c4", reserve > 0 ? "down to the reserve" : "below 40 %"], ...(reserve > 0 ? [["c5", "below the reserve"]] : [])].map(([tone, words]) => (
+        <span class={`tone-${tone}`}><i class="key-block" /> {words}</span>
+      ))}
+    </p>
+  );
 }
 
 const columns: Column<MissionPath["elements"][number]>[] = [
@@ -68,13 +112,8 @@ export function MissionMap({ mission, path, at }: MissionMapProps) {
   if (places.length < 2) return null;
   return (
     <div class="mission-path">
-      <TrackMap tracks={tracks} spots={spots} cursor={at == null ? null : places[at]} height={320} description={`Path of ${mission.title}, north at the top, coloured by the charge that is left.`} />
-      <p class="chart-key">
-        <span>charge left:</span>
-        {[["c1", "80 to 100 %"], ["c2", "60 to 80 %"], ["c3", "40 to 60 %"], ["c4", reserve > 0 ? "down to the reserve" : "below 40 %"], ...(reserve > 0 ? [["c5", "below the reserve"]] : [])].map(([tone, words]) => (
-          <span class={`tone-${tone}`}><i class="key-block" /> {words}</span>
-        ))}
-      </p>
+      <TrackMap tracks={tracks} spots={spots} wind={windOf(path)} cursor={at == null ? null : places[at]} height={320} description={`Path of ${mission.title}, north at the top, coloured by the charge that is left.`} />
+      <ChargeKey reserve={reserve} />
       <Opened title={`The ${path.elements.length} elements of the path`}>
         {() => <Table caption={`Elements of the path of ${mission.title}`} columns={columns} rows={path.elements} />}
       </Opened>

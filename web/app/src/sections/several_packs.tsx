@@ -1,8 +1,11 @@
 // Missions that need several packs: one flight after another, with what each lands with and where it returns from.
+import { useMemo } from "preact/hooks";
 import type { PackMission } from "../documents";
 import { Card, Facts, Verdict, type Grade } from "../ui/basics";
 import { chance, distance, duration, energy, quantity } from "../ui/format";
+import { TrackMap } from "../ui/map";
 import { Table, type Column } from "../ui/table";
+import { ChargeKey, packTracks } from "./mission_map";
 
 type PackFlight = PackMission["flights"][number];
 
@@ -28,6 +31,7 @@ const columns: Column<PackFlight>[] = [
 ];
 
 export function SeveralPacks({ mission }: { mission: PackMission }) {
+  const { tracks, spots, wind } = useMemo(() => packTracks(mission.flights, mission.reserve_soc_percent), [mission]);
   return (
     <Card title={mission.mission} aside={`${mission.packs} packs${mission.packs_needed == null || mission.packs_needed === mission.packs ? "" : `, ${mission.packs_needed} needed`}`}>
       <p>{mission.text}</p>
@@ -37,6 +41,10 @@ export function SeveralPacks({ mission }: { mission: PackMission }) {
         ["Energy", energy(mission.energy_wh)],
         ["All keep the reserve", mission.probability_below_reserve != null && kept(mission.probability_below_reserve)],
       ]} />
+      {tracks.length > 0 && <>
+        <TrackMap tracks={tracks} spots={spots} wind={wind} height={320} description={`Flights of ${mission.mission}, north at the top, coloured by the charge that is left.`} />
+        <ChargeKey reserve={mission.reserve_soc_percent} />
+      </>}
       <Table caption={`Flights of ${mission.mission}`} columns={columns.filter(({ by }) => !by || mission.flights.some((flight) => by(flight) != null))} rows={mission.flights} />
     </Card>
   );

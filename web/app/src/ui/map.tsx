@@ -2,6 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import L from "leaflet";
 import "leaflet/dist/leaflet.css";
+import { number, quantity } from "./format";
 
 export type Place = [latitude_deg: number, longitude_deg: number];
 
@@ -23,9 +24,15 @@ export interface Spot {
   place: Place;
 }
 
+export interface Wind {
+  m_per_s: number;
+  from_deg: number;
+}
+
 interface MapProps {
   tracks: Track[];
   spots?: Spot[];
+  wind?: Wind | null;
   /// Where the cursor of a plot is.
   cursor?: Place | null;
   height?: number;
@@ -93,5 +100,15 @@ export function TrackMap(props: MapProps) {
       map?.off("click", click);
     };
   }, [props.onClick]);
-  return <div class="map" role="group" aria-label={props.description} style={{ height: `${props.height ?? 320}px` }} ref={place} />;
+  const map = <div class="map" role="group" aria-label={props.description} style={{ height: `${props.height ?? 320}px` }} ref={place} />;
+  if (!props.wind?.m_per_s) return map;
+  const { m_per_s, from_deg } = props.wind;
+  return (
+    <div class="windy-map">
+      {map}
+      <p class="map-wind">
+        <span aria-hidden="true" style={{ transform: `rotate(${from_deg + 180}deg)` }}>↑</span> Wind {quantity(m_per_s, 1, "m/s")} from {number(from_deg, 0)}°
+      </p>
+    </div>
+  );
 }

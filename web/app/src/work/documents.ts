@@ -1,4 +1,5 @@
 // The JSON documents of the stages that the engine's screens show, as docs/reference has them.
+import type { FlownTrack } from "../documents";
 
 /// A value with what it rests on, or the reason why there is none.
 export interface Known {
@@ -128,7 +129,7 @@ export interface Simulation {
   packs?: number;
   packs_needed?: number;
   on_ground_s?: number;
-  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string }[];
+  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null }[];
 }
 
 /// `flightwatt path --json` of a mission.
@@ -136,6 +137,8 @@ export interface PathSummary {
   length_m: number;
   duration_s: number;
   mechanical_w: number;
+  /// null: of a mission over several packs, whose flights have theirs.
+  track?: FlownTrack | null;
 }
 
 /// A block of a flight plan, of `flightwatt path PLAN --json`.

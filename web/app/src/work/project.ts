@@ -54,6 +54,7 @@ export class Project {
   private readonly queue = new WorkQueue(
     (error) => this.set({ failed: error.message, progress: null }),
     () => this.set({ busy: false }),
+    () => this.engine.cancel(),
   );
   private files = new Map<string, File | Blob>();
   private wanted = new Map<string, Question>();
@@ -403,8 +404,9 @@ export class Project {
   /// Returns an answer, or why there is none.
   async answered(aircraft: Aircraft, question: Question): Promise<Answered | string> {
     const started = performance.now();
-    this.written.set(aircraft.id, JSON.stringify(question));
+    this.written.delete(aircraft.id);
     const result = await this.engine.run(this.answerArguments(aircraft, question));
+    this.written.set(aircraft.id, JSON.stringify(question));
     if (!result.out) return errorsOf(result);
     const answer = (JSON.parse(result.out) as { aircraft: Answer[] }).aircraft[0];
     if (!answer) return errorsOf(result);

@@ -1,0 +1,121 @@
+#include "path/plan_writer.h"
+
+#include "base/atomic_file.h"
+#include "helpers/test_paths.h"
+#include "path/path_entries.h"
+#include "path/waypoint_files.h"
+
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace flightwatt::path {
+namespace {
+
+constexpr PlanFormat formats[] = {PlanFormat::qgroundcontrol, PlanFormat::ardupilot, PlanFormat::flight_plan};
+
+PathEntry to(double east_m, double north_m, double altitude_m) {
+    PathEntry entry;
+    entry.name = "to";
+    entry.place = {east_m, north_m};
+    entry.altitude_m = altitude_m;
+    return entry;
+}
+
+PathEntry around(double east_m, double north_m, double altitude_m, double turns, double radius_m) {
+    auto entry = to(east_m, north_m, altitude_m);
+    entry.circles = turns;
+    entry.radius_m = std::abs(radius_m);
+    entry.to_right = radius_m > 0.0;
+    return entry;
+}
+
+/// Lines that climb, two speeds, circles to both sides, one of them entered from within, and waits.
+PlanToWrite flight() {
+    std::vector<PathEntry> entries{to(0, 400, 60),
+                                   to(300, 400, 90),
+                                   around(900, 700, 90, 3.25, 80),
+                                   to(900, 1200, 90),
+                                   around(900, 1150, 80, 2, -60),
+                                   to(-200, 300, 70)};
+    entries[1].hold_s = 12.0;
+    entries[3].airspeed_m_per_s = 17.0;
+    PathDefaults defaults;
+    defaults.airspeed_m_per_s = 14.0;
+    defaults.altitude_m = 60.0;
+    defaults.start = LocalPosition{30.0, -40.0};
+    defaults.local_origin = {43.4622, 1.2729};
+    return {"a <flight> & more", build_path(entries, defaults), *path_origin(entries, defaults)};
+}
+
+/// The plan as a mission reads it.
+FlightPath read_again(const PlanToWrite& plan, PlanFormat format) {
+    const auto text = write_plan(plan, format).text;
+    const auto file = test::scratch_dir() / ("written" + plan_ending(format));
+    write_file_atomically(file, text);
+    const AutopilotSettings settings{std::nullopt, 14.0, plan.is_rotorcraft};
+    const auto read = format == PlanFormat::flight_plan ? parse_plan_blocks(text, "p.xml", {written_block}, settings)
+                                                        : read_waypoints(file, settings);
+    PathDefaults defaults;
+    defaults.airspeed_m_per_s = 14.0;
+    defaults.starts_at_first_place = read.starts_at_first_place;
+    defaults.altitude_m = read.entries.front().altitude_m;
+    return build_path(read.entries, defaults);
+}
+
+double length_m(const PathElement& element) {
+    if (const auto* circles = std::get_if<Circles>(&element.shape))
+        return 2.0 * std::numbers::pi * circles->radius_m * circles->turns;
+    const auto* leg = std::get_if<Leg>(&element.shape);
+    return leg != nullptr ? leg->length_m : 0.0;
+}
+
+TEST(PlanWriter, WritesWhatIsReadAgain) {
+    for (const bool is_rotorcraft : {false, true})
+        for (const auto format : formats) {
+            SCOPED_TRACE(fmt::format("{} {}", plan_ending(format), is_rotorcraft));
+            auto plan = flight();
+            plan.is_rotorcraft = is_rotorcraft;
+            const auto again = read_again(plan, format);
+            ASSERT_EQ(again.elements.size(), plan.path.elements.size());
+            for (std::size_t i = 0; i < again.elements.size(); ++i) {
+                const auto& expected = plan.path.elements[i];
+                const auto& actual = again.elements[i];
+                EXPECT_EQ(actual.shape.index(), expected.shape.index()) << i;
+                EXPECT_NEAR(length_m(actual), length_m(expected), 1e-3) << i;
+                EXPECT_NEAR(actual.altitude_change_m, expected.altitude_change_m, 1e-6) << i;
+                if (format != PlanFormat::flight_plan)
+                    EXPECT_EQ(actual.airspeed_m_per_s, expected.airspeed_m_per_s) << i;
+                if (const auto* hold = std::get_if<Hold>(&actual.shape))
+                    EXPECT_EQ(hold->time_s, std::get<Hold>(expected.shape).time_s);
+                const auto here = local_position_at(again, {i, 1.0});
+                const auto there = local_position_at(plan.path, {i, 1.0});
+                EXPECT_NEAR(std::hypot(here.east_m - there.east_m, here.north_m - there.north_m), 0.0, 0.01) << i;
+            }
+        }
+}
+
+TEST(PlanWriter, StatesDefaultsOfTheFormat) {
+    auto plan = flight();
+    plan.origin.altitude_m.reset();
+    for (const auto format : formats) {
+        EXPECT_NE(write_plan(plan, format).notes.front().find("50 m above the ground"), std::string::npos);
+        EXPECT_EQ(write_plan(flight(), format).notes.size(), format == PlanFormat::flight_plan ? 1U : 0U);
+    }
+}
+
+TEST(PlanWriter, KeepsAltitudesAboveTheSea) {
+    auto plan = flight();
+    plan.origin.ground_m = 185.0;
+    EXPECT_NE(write_plan(plan, PlanFormat::flight_plan).text.find("name=\"P2\" x=\"300\" y=\"400\" alt=\"275\""),
+              std::string::npos)
+        << write_plan(plan, PlanFormat::flight_plan).text;
+    EXPECT_NE(write_plan(plan, PlanFormat::ardupilot).text.find("\t185.000000\t1\n"), std::string::npos);
+    EXPECT_NE(write_plan(plan, PlanFormat::ardupilot).text.find("\t60.000000000000\t1\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flightwatt::path
