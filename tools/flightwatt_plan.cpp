@@ -96,6 +96,8 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
     auto text = fmt::format("{}: utility {:.6g}, {}; lands with {:.2f} % of its charge, reserve {:.2f} %", mission.name,
                             utility, bound, *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.sources) text += fmt::format(" and {:.2f} points of margin", plan.margin_percent);
+    if (plan.summary.lines)
+        text += fmt::format("; {}, {:.3g} times seen", mission::describe(*plan.summary.lines), *plan.summary.coverage);
     if (plan.summary.by_flights) text += fmt::format(" ({})", describe(*plan.summary.by_flights));
     return text;
 }
@@ -151,7 +153,7 @@ void write_packs(const cli::StageCall& call, const PlanArguments& arguments, con
         if (format == path::PlanFormat::flight_plan) pack.blocks = {path::written_block};
         files[folder / (name + ".toml")] =
             fmt::format("# {}\n", one_line(describe(flight.flown.simulation.summary))) +
-            planned_mission_toml(file.text, file.path, setup.compute, flight.flown.schedule, folder, pack).text;
+            planned_mission_toml(file.text, file.path, setup.compute, flight.flown.schedule, folder, {}, pack).text;
         files[folder / (name + ".json")] = cli::json_text(cli::json_document(call, record_json(flight)));
     }
     make_directories(folder);
@@ -193,21 +195,26 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     }
     cli::warn_of_setup(call, problem->setup);
     auto plan = plan_mission(*problem, arguments.probability);
-    plan.summary.by_flights = landing_by_flights(problem->setup, plan.mission.schedule);
-    if (!plan.plan.feasible) refuse_infeasible(call, arguments, file, *problem, plan);
-    const auto text = describe(plan, problem->setup);
+    const auto& setup = plan.mission.setup;
+    plan.summary.by_flights = landing_by_flights(setup, plan.mission.schedule);
+    if (!plan.plan.feasible) {
+        const auto& stated = *problem;
+        refuse_infeasible(call, arguments, file,
+                          stated.survey ? stated.survey->mission_with(*layout_of(setup)) : stated, plan);
+    }
+    const auto text = describe(plan, setup);
     // The files that the result names are found from where it will stand.
     const auto folder = std::filesystem::absolute(call.output.value_or("result")).parent_path();
     const auto planned =
-        planned_mission_toml(file.text, file.path, problem->setup.compute, plan.mission.schedule, folder);
+        planned_mission_toml(file.text, file.path, setup.compute, plan.mission.schedule, folder, layout_of(setup));
     cli::write_result(call, fmt::format("# {}\n", one_line(text)) + planned.text);
     cli::warn_of_lost_comments(call, planned);
     if (call.json) {
-        cli::print_json(call, cli::PlanOutput{&plan, &problem->setup});
+        cli::print_json(call, cli::PlanOutput{&plan, &setup});
     } else {
         cli::note(call, text);
-        cli::note_power_model(call, problem->setup);
-        if (plan.sources) note_sources(call, arguments, problem->setup, *plan.sources, plan.probability_standard_error);
+        cli::note_power_model(call, setup);
+        if (plan.sources) note_sources(call, arguments, setup, *plan.sources, plan.probability_standard_error);
     }
     return cli::ok;
 }

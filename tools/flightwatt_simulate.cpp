@@ -34,7 +34,9 @@ void write_schedule(const cli::StageCall& call, const std::optional<std::string>
     if (!file) return;
     const auto folder = std::filesystem::absolute(*file).parent_path();
     const auto heading = fmt::format("# {}\n", one_line(describe(flight.simulation.summary)));
-    const auto flown = planned_mission_toml(text, call.inputs.front(), prepared.setup.compute, flight.schedule, folder);
+    const auto& setup = flight.setup ? *flight.setup : prepared.setup;
+    const auto flown =
+        planned_mission_toml(text, call.inputs.front(), setup.compute, flight.schedule, folder, layout_of(setup));
     write_file_atomically(*file, heading + flown.text);
     cli::warn_of_lost_comments(call, flown);
 }

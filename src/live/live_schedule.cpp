@@ -41,6 +41,9 @@ bool is_after(const mission::ScheduleSegment& segment, const PhaseTime& moment) 
 }  // namespace
 
 LiveSchedule::LiveSchedule(mission::MissionVariant mission, bool replans) : mission_(std::move(mission)) {
+    if (setup().survey && setup().survey->is_chosen)
+        throw InputError({setup().file}, "its lines are yet to be chosen, and the flight on them is followed",
+                         "choose them before the flight: flightwatt plan MISSION.toml -o PLANNED.toml");
     if (replans) {
         planner_ = std::make_unique<mission::AdaptivePlanner>(make_adaptive_planner(deciding(mission_)));
         decider_.emplace(*planner_);

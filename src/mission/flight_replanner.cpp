@@ -4,6 +4,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mission/planning/planner.h"
+#include "mission/planning/survey_layouts.h"
 #include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/joint_spread.h"
 #include "mission/simulation/load_segments.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -69,16 +71,19 @@ AdaptivePlanner make_adaptive_planner(const PlanningProblem& problem) {
 }
 
 FlightReplanner::FlightReplanner(const AdaptivePlanner& planner)
-    : adaptive_(planner),
-      nominal_(planner.nominal),
-      planned_(timeline_of(nominal_.setup.duration_s)),
-      known_load_(std::make_shared<const MissionLoad>(make_mission_load(nominal_.setup))) {
-    required_deviation_ = expected_reach(nominal_);
+    : adaptive_(planner), required_deviation_(expected_reach(planner.nominal)) {
+    use({std::shared_ptr<void>(), &planner.nominal});
+}
+
+void FlightReplanner::use(std::shared_ptr<const PlanningProblem> problem) {
+    problem_ = std::move(problem);
+    planned_ = timeline_of(problem_->setup.duration_s);
+    known_load_ = std::make_shared<const MissionLoad>(make_mission_load(problem_->setup));
 }
 
 double FlightReplanner::mechanical_factor() const {
     if (observed_.mechanical_percent <= 0.0) return 1.0;
-    const double gain = observed_.time_s / (observed_.time_s + nominal_.adaptive->learning_time_s);
+    const double gain = observed_.time_s / (observed_.time_s + adaptive_.nominal.adaptive->learning_time_s);
     return std::max(
         0.0, 1.0 + gain * (observed_.observed_percent - observed_.predicted_percent) / observed_.mechanical_percent);
 }
@@ -92,24 +97,55 @@ FlightReplanner::PredictedDepletion FlightReplanner::predict(const Schedule& run
         battery::Discharge now{state};
         for (const auto& scheduled : run)
             for (const auto& segment : disturbed(load_segments(*known_load_, scheduled), {wind}))
-                now = advance_segment(nominal_.setup.battery, 0.0, segment, now);
+                now = advance_segment(problem_->setup.battery, 0.0, segment, now);
         return state.soc_percent - now.soc_percent;
     };
     const double percent = lost_percent(1.0);
     return {percent, (lost_percent(1.0 + more) - percent) / more};
 }
 
-Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryState& now) const {
-    const auto& policy = *nominal_.adaptive;
+Plan FlightReplanner::replan(const PhaseTime& moment, const battery::BatteryState& now) {
     const double time_s = planned_.start_s[moment.phase] + moment.time_s;
-    const double left_s = planned_.duration_s - time_s;
+    auto best = plan_from(*problem_, time_s, now);
+    const auto& choices = adaptive_.nominal.survey;
+    if (!choices || moment.phase == Phase::landing) return best;
+    const auto merit = [&](const PlanningProblem& problem, const Plan& plan) {
+        const double duration_s = timeline_of(problem.setup.duration_s).duration_s;
+        const double utility = (utility_ + plan.utility * (duration_s - time_s)) / duration_s;
+        return std::tuple(plan.feasible,
+                          plan.feasible ? utility + coverage_utility(problem.setup) : plan.final_soc_percent,
+                          plan.feasible ? 0.0 : -duration_s * mean_level_w(problem.setup, Phase::cruise));
+    };
+    auto most = merit(*problem_, best);
+    std::optional<PlanningProblem> chosen;
+    const double cruise_s = moment.phase == Phase::cruise ? moment.time_s : 0.0;
+    for (const auto& layout : remaining_layouts(*choices, *problem_->setup.survey, cruise_s)) {
+        try {
+            auto problem = choices->mission_with(layout);
+            auto plan = plan_from(problem, time_s, now);
+            const auto reached = merit(problem, plan);
+            if (reached <= most) continue;
+            most = reached;
+            best = std::move(plan);
+            chosen = std::move(problem);
+        } catch (const InputError&) {  // its path cannot be flown
+            continue;
+        }
+    }
+    if (chosen) use(std::make_shared<const PlanningProblem>(std::move(*chosen)));
+    return best;
+}
+
+Plan FlightReplanner::plan_from(const PlanningProblem& problem, double time_s, const battery::BatteryState& now) const {
+    const auto& policy = *adaptive_.nominal.adaptive;
+    const double left_s = timeline_of(problem.setup.duration_s).duration_s - time_s;
     const double seen =
         policy.learning_time_s > 0.0 ? policy.learning_time_s / (observed_.time_s + policy.learning_time_s) : 0.0;
     const double margin = required_deviation_ * std::sqrt(seen + policy.learning_time_s / left_s);
     const PlanStart start{time_s,          now.soc_percent, running_, running_for_s_, mechanical_factor() + margin,
                           now.rc_voltage_v};
-    return plan_remaining(nominal_, *adaptive_.planner, start, nominal_.setup.reserve_soc_percent,
-                          effort_for(left_s / nominal_.plan.slot_s));
+    return plan_remaining(problem, *adaptive_.planner, start, problem.setup.reserve_soc_percent,
+                          effort_for(left_s / problem.plan.slot_s));
 }
 
 void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, const battery::BatteryState& before,
@@ -117,6 +153,7 @@ void FlightReplanner::update(const PhaseSegment& interval, const Schedule& run, 
     for (const auto& segment : run) {
         if (!running_ || *running_ != segment.run) running_for_s_ = 0.0;
         running_for_s_ += segment.duration_s();
+        utility_ += utility_per_s(problem_->setup.utilities, segment.run) * segment.duration_s();
         running_ = segment.run;
     }
     const auto predicted = predict(run, before);

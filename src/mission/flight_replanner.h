@@ -34,8 +34,11 @@ class FlightReplanner {
     explicit FlightReplanner(const AdaptivePlanner& planner);
 
     /// The plan from a time on; the schedule of least energy demand if none is feasible. Takes milliseconds, less
-    /// than 0.2 s for a few thousand slots.
-    Plan replan(const PhaseTime& moment, const battery::BatteryState& now) const;
+    /// than 0.2 s for a few thousand slots. Of an area whose lines are chosen, also for those that are not flown yet.
+    Plan replan(const PhaseTime& moment, const battery::BatteryState& now);
+
+    /// The mission as it is planned now, with the lines that were chosen last.
+    const PlanningProblem& problem() const { return *problem_; }
 
     /// Updates the factor of mechanical power from an interval flown with `run`.
     void update(const PhaseSegment& interval, const Schedule& run, const battery::BatteryState& before,
@@ -58,15 +61,20 @@ class FlightReplanner {
         double mechanical_percent = 0.0;  ///< how much more by mechanical power of twice as much
     };
 
+    /// The plan of a mission from a mission time on.
+    Plan plan_from(const PlanningProblem& problem, double time_s, const battery::BatteryState& now) const;
+    void use(std::shared_ptr<const PlanningProblem> problem);
+
     PredictedDepletion predict(const Schedule& run, const battery::BatteryState& state) const;
 
     const AdaptivePlanner& adaptive_;
-    const PlanningProblem& nominal_;
+    std::shared_ptr<const PlanningProblem> problem_;
     MissionTimeline planned_;
     std::shared_ptr<const MissionLoad> known_load_;
     Observed observed_;
     std::optional<compute::Configuration> running_;
     double running_for_s_ = 0.0;
+    double utility_ = 0.0;             ///< so far: utility a second times its time
     double required_deviation_ = 0.0;  ///< of mechanical power, as a fraction: the reserve is kept up to it
 };
 

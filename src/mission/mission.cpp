@@ -74,9 +74,22 @@ double utility_per_s(const std::vector<std::optional<Utility>>& utilities,
     return sum;
 }
 
+bool has_utility(const MissionSetup& mission) {
+    return std::ranges::any_of(mission.utilities, [](const auto& u) { return u.has_value(); }) ||
+           (mission.survey && mission.survey->utility);
+}
+
+std::optional<path::SurveyLayout> layout_of(const MissionSetup& mission) {
+    return mission.survey ? std::optional(mission.survey->layout) : std::nullopt;
+}
+
+double coverage_utility(const MissionSetup& mission) {
+    return mission.survey ? mission.survey->utility.value_or(0.0) : 0.0;
+}
+
 std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s) {
     const auto& utilities = mission.utilities;
-    if (std::ranges::none_of(utilities, [](const auto& u) { return u.has_value(); })) return std::nullopt;
+    if (!has_utility(mission)) return std::nullopt;
     const auto timeline = timeline_of(mission.duration_s);
     double sum = 0.0;
     for (const auto& segment : schedule) {
@@ -84,7 +97,8 @@ std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& 
         const double runs_s = std::min(phase_start_s + segment.end_s, until_s) - (phase_start_s + segment.start_s);
         if (runs_s > 0.0) sum += utility_per_s(utilities, segment.run) * runs_s;
     }
-    return sum / timeline.duration_s;
+    const double part = std::min(until_s / timeline.duration_s, 1.0);
+    return sum / timeline.duration_s + coverage_utility(mission) * part;
 }
 
 }  // namespace flightwatt::mission

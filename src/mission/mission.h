@@ -5,6 +5,7 @@
 #include "compute/compute_model.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/schedule.h"
+#include "path/area.h"
 #include "path/cruise_path.h"
 
 #include <cstddef>
@@ -55,6 +56,24 @@ struct Packs {
     path::LocalPosition home = {};                 ///< from the start of the path
 };
 
+/// A line of a survey in the cruise.
+struct SurveyLineTime {
+    double start_s = 0.0;  ///< with the turn before it, since the cruise began
+    double end_s = 0.0;
+    double to = 0.0;  ///< part of the area's width up to which it covers, in the order of flight
+};
+
+/// How the lines of a path cover its area.
+struct SurveyCoverage {
+    path::SurveyLayout layout;
+    bool is_chosen = false;  ///< with the schedule, and not stated by the mission
+    std::vector<SurveyLineTime> lines = {};
+    double coverage = 0.0;  ///< how often a place of the area is seen on average; 0 if the sensor's width is not stated
+    /// Mean over the area of weight * shape(coverage): a utility a second as those of components, as long as the
+    /// mission takes. Absent: none is stated.
+    std::optional<double> utility = {};
+};
+
 /// A flight, the software that can run in it, and the battery that feeds both: all but the schedule.
 struct MissionSetup {
     std::string file;
@@ -65,6 +84,7 @@ struct MissionSetup {
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
     bool has_steep_turn = false;                       ///< of the path, which the aircraft may not be able to fly
+    std::optional<SurveyCoverage> survey = {};         ///< of a path over an area
     std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve
     /// Measured power of each phase in a replay, instead of the power by model and path.
     PerPhase<std::shared_ptr<const path::PiecewisePower>> measured_power = {};
@@ -114,12 +134,26 @@ struct AdaptivePolicy {
     double probability = 0.95;      ///< with which the reserve is to be kept, of every decision
 };
 
+struct PlanningProblem;
+
+/// The ways to cover the area of a path that a plan may choose between: for each block of equal width one of the
+/// levels, and one course of all.
+struct SurveyChoices {
+    std::vector<double> headings_deg;
+    std::vector<path::SurveyStrip> levels;  ///< spacing and airspeed; `to` is not used
+    std::size_t blocks = 1;
+    /// The mission with one of them. Throws InputError where its path cannot be flown. May be called by several threads.
+    std::function<PlanningProblem(const path::SurveyLayout&)> mission_with;
+};
+
 /// A mission whose schedule is yet to be made.
 struct PlanningProblem {
     MissionSetup setup;
     Schedule fixed;  ///< in order: the segments scheduled by the mission
     PlanSettings plan;
     std::optional<AdaptivePolicy> adaptive;  ///< the schedule is made in flight, again and again
+    /// If the lines over an area are chosen with the schedule; `setup` and `fixed` are then of one of the choices.
+    std::shared_ptr<const SurveyChoices> survey = {};
 };
 
 /// Content of a mission file.
@@ -154,7 +188,16 @@ double utility_per_s(const Utility& utility, const std::vector<double>& qos);
 /// `utilities` has one entry a component of the model (or none at all).
 double utility_per_s(const std::vector<std::optional<Utility>>& utilities, const compute::Configuration& configuration);
 
-/// Mean utility a second of a schedule up to `until_s` [mission time], over the duration of the
+/// Whether a component or the coverage of an area has a utility.
+bool has_utility(const MissionSetup& mission);
+
+/// The lines over the area of a path; none without one.
+std::optional<path::SurveyLayout> layout_of(const MissionSetup& mission);
+
+/// The utility a second of how the area is covered; 0 without one.
+double coverage_utility(const MissionSetup& mission);
+
+/// Mean utility a second of a schedule and of the coverage up to `until_s` [mission time], over the duration of the
 /// whole mission; none if the mission states no utility.
 std::optional<double> mean_utility(const MissionSetup& mission, const Schedule& schedule, double until_s);
 

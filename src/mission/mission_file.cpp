@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -223,6 +224,27 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
                      "`flightwatt plan` makes one; without [plan], [[schedule]] is taken as complete");
 }
 
+MissionVariant scheduled_mission(const TomlTable& root, const MissionReadOptions& reading, MissionSetup mission);
+
+/// The choices of lines over the area of a mission; none if they are fixed or `reading` chooses.
+std::shared_ptr<const SurveyChoices> read_survey(const TomlTable& root, const MissionReadOptions& reading,
+                                                 const MissionSetup& setup) {
+    if (reading.survey) return nullptr;
+    auto choices = read_survey_choices(root);
+    if (!choices) return nullptr;
+    auto mutex = std::make_shared<std::mutex>();  // tables note which of their keys were read
+    choices->mission_with = [=](const path::SurveyLayout& layout) {
+        auto chosen = reading;
+        chosen.survey = layout;
+        auto changed = setup;
+        changed.notes.clear();
+        const std::lock_guard lock(*mutex);
+        read_cruise_path(root, chosen, changed);
+        return std::get<PlanningProblem>(scheduled_mission(root, chosen, std::move(changed)));
+    };
+    return std::make_shared<const SurveyChoices>(std::move(*choices));
+}
+
 /// The mission with its schedule, or the planning problem with the fixed part of it. A complete schedule, such as the
 /// result of flightwatt plan, is scaled in time to a cruise of another duration than `stated_s`.
 MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOptions& reading,
@@ -234,9 +256,15 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     const auto& entries_s = is_stretched ? stated_s : setup.duration_s;
     auto entries = read_schedule(root, setup.compute, entries_s);
     const bool lacks_schedule = entries.empty() && !setup.compute.components.empty();
-    if (!reading.allow_unplanned && !adaptive && !setup.packs) require_schedule(root, lacks_schedule);
-    if (lacks_schedule || root.has("plan") || adaptive) {
-        PlanningProblem problem{std::move(setup), {}, {}, adaptive};
+    auto survey = read_survey(root, reading, setup);
+    const bool chooses_lines = survey || reading.survey;
+    if (!reading.allow_unplanned && !adaptive && !setup.packs && !reading.survey) {
+        require_schedule(root, lacks_schedule);
+        if (survey)
+            throw InputError(root.where("path"), "its lines are yet to be chosen", "`flightwatt plan` chooses them");
+    }
+    if (lacks_schedule || root.has("plan") || adaptive || chooses_lines) {
+        PlanningProblem problem{std::move(setup), {}, {}, adaptive, std::move(survey)};
         problem.plan = read_plan_settings(root, problem.setup.compute);
         problem.fixed = resolve_fixed_segments(entries, problem.setup.duration_s);
         if (problem.adaptive && problem.adaptive->decide_every_s == 0.0)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "path/area.h"
+
 #include <optional>
 
 namespace flightwatt::mission {
@@ -13,6 +15,7 @@ struct MissionReadOptions {
     std::optional<double> circles = {};
     std::optional<double> return_after_m = {};
     std::optional<double> path_times = {};
+    std::optional<path::SurveyLayout> survey = {};  ///< of a path whose lines are chosen: this choice
 };
 
 }  // namespace flightwatt::mission

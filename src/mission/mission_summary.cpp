@@ -59,6 +59,21 @@ std::string describe(const mechanical::HeldOutScore& power_model) {
                        power_model.mean_absolute_error_percent, power_model.flights, known);
 }
 
+std::string describe(const path::SurveyLayout& layout) {
+    std::vector<std::string> spacings;
+    std::vector<std::string> speeds;
+    const auto add = [](std::vector<std::string>& texts, double value) {
+        auto text = fmt::format("{:.4g}", value);
+        if (texts.empty() || texts.back() != text) texts.push_back(std::move(text));
+    };
+    for (const auto& strip : layout.strips) {
+        add(spacings, strip.spacing_m);
+        if (strip.airspeed_m_per_s) add(speeds, *strip.airspeed_m_per_s);
+    }
+    const auto text = fmt::format("lines {} m apart on {:.4g} degrees", fmt::join(spacings, ", "), layout.heading_deg);
+    return speeds.empty() ? text : fmt::format("{} at {} m/s", text, fmt::join(speeds, ", "));
+}
+
 std::string describe(const MissionSummary& summary) {
     if (const auto& failure = summary.undeliverable) {
         return fmt::format("{}: the battery cannot deliver {:.6g} W after {}: its limit U^2 / (4 R) is {:.6g} W",
@@ -74,6 +89,7 @@ std::string describe(const MissionSummary& summary) {
     } else if (!summary.keeps_reserve) {
         end += fmt::format(", less than the reserve of {:.6g} %", summary.reserve_soc_percent);
     }
+    if (summary.lines) end += fmt::format("; {}, {:.3g} times seen", describe(*summary.lines), *summary.coverage);
     if (summary.by_flights) end += fmt::format(" ({})", describe(*summary.by_flights));
     if (summary.decisions && summary.decisions->without_plan > 0) {
         end += fmt::format(

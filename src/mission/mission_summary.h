@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "battery/discharge.h"
 #include "mechanical/mechanical_model.h"
+#include "path/area.h"
 
 #include <array>
 #include <cstddef>
@@ -124,6 +125,8 @@ struct MissionSummary {
     bool feasible = false;             ///< the battery lasts: empty at the very end counts, any earlier does not
     double reserve_soc_percent = 0.0;  ///< required by the mission
     bool keeps_reserve = false;        ///< feasible, and the reserve is left
+    std::optional<path::SurveyLayout> lines = std::nullopt;     ///< over an area, if they were chosen
+    std::optional<double> coverage = std::nullopt;              ///< with them: how often a place is seen on average
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy
     std::optional<MonteCarloResult> samples = std::nullopt;     ///< if flights were drawn
     std::optional<EstimatedLanding> by_flights = std::nullopt;
@@ -136,6 +139,9 @@ std::string describe(const mechanical::HeldOutScore& power_model);
 
 /// When the battery ended or failed, or the mission's end if it lasts.
 double powered_end_s(const MissionSummary& summary);
+
+/// "lines 20, 35 m apart on 30 degrees at 12 m/s", the airspeed only where the lines state it.
+std::string describe(const path::SurveyLayout& layout);
 
 /// One line for people: the final charge, or time and cause of the battery's failure.
 std::string describe(const MissionSummary& summary);

@@ -42,7 +42,7 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
     std::optional<std::size_t> fewest;
     double best_deg = 0.0;
     for (double heading_deg = 0.0; heading_deg < half_turn_deg; heading_deg += step_deg) {
-        const auto count = path::parse_area(text, file, spacing_m, heading_deg).entries.size();
+        const auto count = path::parse_area(text, file, {heading_deg, {{spacing_m}}}).entries.size();
         if (fewest && count >= *fewest) continue;
         fewest = count;
         best_deg = heading_deg;

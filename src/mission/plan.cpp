@@ -1,12 +1,16 @@
 #include "mission/plan.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/units.h"
 #include "mission/planning/planner.h"
+#include "mission/planning/survey_layouts.h"
 #include "mission/sampling/flight_spreads.h"
 #include "mission/sampling/landing_distribution.h"
 
 #include <algorithm>
+#include <functional>
+#include <tuple>
 #include <utility>
 
 namespace flightwatt::mission {
@@ -14,7 +18,8 @@ namespace {
 
 constexpr int max_rounds_to_land = 10;
 constexpr int max_margin_rounds = 8;
-constexpr int max_rounds_to_any = 24;    ///< until a plan is better than the one of least energy demand
+constexpr int max_rounds_to_any = 24;  ///< until a plan is better than the one of least energy demand
+constexpr SearchLimits quick_search{1e-4, 5, 4};
 constexpr double slack_fraction = 2e-3;  // of the flights' deviation: 0.0002 of a probability of 0.05
 
 /// How far below `wanted_percent` a simulated mission ends [points], counting what it demanded after the
@@ -84,6 +89,7 @@ MissionPlan plan_certain(const PlanningProblem& problem) {
     plan.feasible = found.lands();
     if (plan.feasible) {
         found = searched(problem, planner, found, plan);
+        plan.utility_bound += coverage_utility(problem.setup);
         plan.utility = found.summary.utility.value_or(0.0);
         plan.utility_bound = std::max(plan.utility_bound, plan.utility);
     }
@@ -154,6 +160,75 @@ MissionPlan plan_with_probability(const PlanningProblem& problem, double probabi
     return best;
 }
 
+MissionPlan plan_lines_as_stated(const PlanningProblem& problem, const std::optional<double>& probability) {
+    return probability ? plan_with_probability(problem, *probability) : plan_certain(problem);
+}
+
+/// A way to cover an area, with what its schedules can reach at most.
+struct BoundedLayout {
+    path::SurveyLayout layout;
+    std::optional<InputError> refused = std::nullopt;  ///< why its path cannot be flown
+    bool lands = false;
+    bool bound_is_proven = true;
+    double utility_bound = 0.0;
+    double least_percent = 0.0;  ///< charge at the end with the schedule of least energy demand
+    double least_wh = 0.0;       ///< mechanical energy of its path
+};
+
+/// Bounds the utility by a quick search.
+BoundedLayout bounded(const PlanningProblem& problem, const path::SurveyLayout& layout) {
+    BoundedLayout result{layout};
+    try {
+        const auto flown = problem.survey->mission_with(layout);
+        const auto tables = make_planning_tables(flown);
+        const auto plan = plan_remaining(flown, tables, start_of(flown), flown.setup.reserve_soc_percent, quick_search);
+        result.lands = plan.feasible;
+        result.bound_is_proven = plan.bound_is_proven;
+        if (plan.feasible)
+            result.utility_bound =
+                (plan.bound_is_proven ? plan.utility_bound : std::ranges::max(tables.utility_per_s)) +
+                coverage_utility(flown.setup);
+        result.least_percent = plan.final_soc_percent;
+        result.least_wh =
+            units::wh_from_joule(mean_level_w(flown.setup, Phase::cruise) * flown.setup.duration_s[Phase::cruise]);
+    } catch (const InputError& error) {
+        result.refused = error;
+    }
+    return result;
+}
+
+MissionPlan plan_with_lines(const PlanningProblem& problem, const std::optional<double>& probability) {
+    constexpr double as_good = 1.0 + 1e-5;  // a plan's own gap is as large
+    make_planning_tables(problem);          // throws for all
+    const auto layouts = all_layouts(*problem.survey);
+    std::vector<BoundedLayout> ways(layouts.size());
+    for_each_in_parallel(layouts.size(), [&](std::size_t i) { ways[i] = bounded(problem, layouts[i]); });
+    std::ranges::stable_sort(ways, std::greater(), [](const BoundedLayout& way) {
+        return std::tuple(!way.refused, way.lands, way.utility_bound, way.least_percent, -way.least_wh);
+    });
+    if (ways.front().refused) throw *ways.front().refused;
+    std::optional<MissionPlan> best;
+    double utility_bound = 0.0;
+    for (const auto& way : ways) {
+        const double known = best && best->plan.feasible ? best->plan.utility : -1.0;
+        if (best && (!way.lands || way.utility_bound <= known * as_good)) {
+            if (way.lands) utility_bound = std::max(utility_bound, way.utility_bound);
+            break;
+        }
+        auto plan = plan_lines_as_stated(problem.survey->mission_with(way.layout), probability);
+        plan.plan.utility = plan.summary.utility.value_or(0.0);
+        if (plan.plan.feasible) utility_bound = std::max(utility_bound, plan.plan.utility_bound);
+        const auto merit = [](const Plan& of) {
+            return std::pair(of.feasible, of.feasible ? of.utility : of.final_soc_percent);
+        };
+        const bool is_better = !best || merit(plan.plan) > merit(best->plan);
+        if (is_better) best = std::move(plan);
+    }
+    best->plan.utility_bound = best->plan.feasible ? std::max(utility_bound, best->plan.utility) : 0.0;
+    best->plan.bound_is_proven = std::ranges::all_of(ways, &BoundedLayout::bound_is_proven);
+    return std::move(*best);
+}
+
 }  // namespace
 
 bool has_uncertainty(const MissionSetup& mission) { return !collect_uncertainty(mission).sources.varied.empty(); }
@@ -176,7 +251,7 @@ void require_known_spread(const MissionSetup& mission) {
 }
 
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability) {
-    return probability ? plan_with_probability(problem, *probability) : plan_certain(problem);
+    return problem.survey ? plan_with_lines(problem, probability) : plan_lines_as_stated(problem, probability);
 }
 
 MissionSummary summary_with_origin(const MissionPlan& plan) {

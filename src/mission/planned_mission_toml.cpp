@@ -4,7 +4,9 @@
 #include "base/toml_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <regex>
 #include <sstream>
@@ -54,6 +56,25 @@ void erase_schedule(Lines& lines) {
         root_end);
 }
 
+/// Keys of [path] whose values were choices, with the chosen ones.
+using ChosenValues = std::map<std::string, double>;
+
+/// Replaces the choices of [path] by what was chosen; those that are not in `chosen` are removed.
+void replace_choices(Lines& lines, const ChosenValues& chosen) {
+    static const std::regex choice(R"(^(\s*(spacing_m|heading_deg|airspeed_m_per_s)\s*=\s*)\{[^}]*\}(.*)$)");
+    std::smatch found;
+    for (auto at = lines.begin(); at != lines.end();) {
+        if (!std::regex_match(*at, found, choice)) {
+            ++at;
+        } else if (const auto value = chosen.find(found[2].str()); value != chosen.end()) {
+            *at = found[1].str() + toml_real(value->second) + found[3].str();
+            ++at;
+        } else {
+            at = lines.erase(at);
+        }
+    }
+}
+
 /// A file name that changes.
 struct RenamedFile {
     std::string read;
@@ -68,12 +89,13 @@ std::string normalise_text(std::string_view text) {
 }
 
 /// Edits `text` to the content `wanted`, and keeps comments, order and spelling of the rest: removes plan, policy and
-/// schedule, renames files, adds the format. The result is parsed again; std::nullopt if its content is not `wanted`.
+/// schedule, replaces choices, renames files, adds the format. The result is parsed again; std::nullopt if its content is not `wanted`.
 std::optional<std::string> edit_keeping_comments(const std::string& text, const std::vector<RenamedFile>& renamed,
-                                                 const toml::table& wanted) {
+                                                 const std::optional<ChosenValues>& chosen, const toml::table& wanted) {
     Lines lines;
     boost::algorithm::split(lines, text, [](char c) { return c == '\n'; });
     erase_schedule(lines);
+    if (chosen) replace_choices(lines, *chosen);
     while (!lines.empty() && lines.back().empty()) lines.pop_back();
     auto kept = fmt::format("{}\n", fmt::join(lines, "\n"));
     for (const auto& [read, name] : renamed)
@@ -156,11 +178,41 @@ void choose_pack(toml::table& root, const PlannedPack& pack) {
     root.insert_or_assign("path", std::move(flown));
 }
 
+/// Puts the chosen lines into a [path]: returns what was chosen; std::nullopt if all is fixed. Lines of several spacings are strips instead.
+std::optional<ChosenValues> choose_lines(toml::table& path, const path::SurveyLayout& layout) {
+    constexpr std::array keys{"spacing_m", "heading_deg", "airspeed_m_per_s"};
+    const auto is_choice = [&](const char* key) { return path.get_as<toml::table>(key) != nullptr; };
+    if (std::ranges::none_of(keys, is_choice)) return std::nullopt;
+    const auto& first = layout.strips.front();
+    ChosenValues chosen;
+    if (is_choice("heading_deg")) chosen["heading_deg"] = layout.heading_deg;
+    if (is_choice("airspeed_m_per_s")) chosen["airspeed_m_per_s"] = *first.airspeed_m_per_s;
+    if (layout.strips.size() > 1)
+        path.erase("spacing_m");
+    else if (is_choice("spacing_m"))
+        chosen["spacing_m"] = first.spacing_m;
+    for (const auto& [key, value] : chosen) path.insert_or_assign(key, value);
+    path.is_inline(false);  // strips are appended
+    return chosen;
+}
+
+std::string strips_text(const path::SurveyLayout& layout) {
+    std::string text;
+    for (const auto& strip : layout.strips) {
+        text +=
+            fmt::format("\n[[path.strip]]\nto = {}\nspacing_m = {}\n", toml_real(strip.to), toml_real(strip.spacing_m));
+        if (strip.airspeed_m_per_s) text += fmt::format("airspeed_m_per_s = {}\n", toml_real(*strip.airspeed_m_per_s));
+    }
+    return text;
+}
+
 }  // namespace
 
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
-                                        const std::filesystem::path& folder, const std::optional<PlannedPack>& pack) {
+                                        const std::filesystem::path& folder,
+                                        const std::optional<path::SurveyLayout>& survey,
+                                        const std::optional<PlannedPack>& pack) {
     const auto plain = normalise_text(text);
     auto root = toml::parse(plain, path.string());
     root.insert_or_assign("format", format_version);
@@ -176,11 +228,16 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
         for (auto&& [name, component] : *components)
             if (auto* table = component.as_table()) move_path(*table, "profile", from, to, renamed);
     }
-    if (auto* cruise = root.get_as<toml::table>("path"); cruise != nullptr && !pack)
+    std::optional<ChosenValues> chosen;
+    if (auto* cruise = root.get_as<toml::table>("path"); cruise != nullptr && !pack) {
         for (const std::string_view key : {"waypoints", "flight_plan", "area"})
             move_path(*cruise, key, from, to, renamed);
-    const auto schedule_below = schedule_text(compute, schedule, pack.has_value());
-    if (const auto kept = edit_keeping_comments(plain, renamed, root)) return {*kept + schedule_below, false};
+        if (survey) chosen = choose_lines(*cruise, *survey);
+    }
+    const bool has_strips = chosen && survey->strips.size() > 1;
+    const auto schedule_below =
+        (has_strips ? strips_text(*survey) : "") + schedule_text(compute, schedule, pack.has_value());
+    if (const auto kept = edit_keeping_comments(plain, renamed, chosen, root)) return {*kept + schedule_below, false};
     std::ostringstream out;
     out << toml::toml_formatter{root, toml::toml_formatter::default_flags & ~toml::format_flags::indentation};
     return {out.str() + "\n" + schedule_below, plain.find('#') != std::string::npos};

@@ -2,6 +2,7 @@
 
 #include "compute/compute_model.h"
 #include "mission/schedule.h"
+#include "path/area.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -26,13 +27,14 @@ struct PlannedPack {
     std::vector<std::string> blocks;  ///< of a flight plan of Paparazzi
 };
 
-/// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]]; the
-/// rest is kept as written, with comments, if the notation permits. Lines end with \n. `compute` is the mission's.
-/// Names of files are relative to `folder`, in which the result is written. With `pack` it is the mission of that
-/// flight.
+/// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]], and with
+/// the lines of `survey` instead of those of its [path], if they are chosen; the rest is kept as written, with comments,
+/// if the notation permits. Lines end with \n. `compute` is the mission's. Names of files are relative to `folder`, in
+/// which the result is written. With `pack` it is the mission of that flight.
 PlannedMissionText planned_mission_toml(std::string_view text, const std::filesystem::path& path,
                                         const compute::ComputeModel& compute, const Schedule& schedule,
                                         const std::filesystem::path& folder,
+                                        const std::optional<path::SurveyLayout>& survey = std::nullopt,
                                         const std::optional<PlannedPack>& pack = std::nullopt);
 
 }  // namespace flightwatt::mission

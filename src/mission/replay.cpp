@@ -5,11 +5,14 @@
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/planning/planner.h"
+#include "mission/planning/survey_layouts.h"
 #include "mission/prepared_mission.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -37,6 +40,20 @@ TrainingOverlap saw(const std::vector<std::string>& model_flights, const std::st
     return std::ranges::count(model_flights, flight) > 0 ? TrainingOverlap::yes : TrainingOverlap::no;
 }
 
+/// Changes a problem, and those of all lines that it may choose.
+void change(PlanningProblem& problem, const std::function<void(PlanningProblem&)>& change_one) {
+    if (problem.survey) {
+        auto choices = *problem.survey;
+        choices.mission_with = [with = choices.mission_with, change_one](const path::SurveyLayout& layout) {
+            auto mission = with(layout);
+            change_one(mission);
+            return mission;
+        };
+        problem.survey = std::make_shared<const SurveyChoices>(std::move(choices));
+    }
+    change_one(problem);
+}
+
 /// Reason why a mission cannot be replayed on a flight; empty if it can.
 std::string no_replay_reason(const MissionSetup& mission, const mechanical::MeasuredFlight& flight) {
     for (const auto phase : all_phases) {
@@ -47,7 +64,11 @@ std::string no_replay_reason(const MissionSetup& mission, const mechanical::Meas
 }
 
 void add_notes(const MissionSetup& mission, const mechanical::MeasuredFlight& flight, Replay& replay) {
-    if (mission.cruise_path)
+    if (mission.survey && mission.survey->is_chosen)
+        replay.notes.emplace_back(
+            "the mission's lines are chosen: the flight's cruise is cut short or repeated for their duration, and "
+            "planned for with the model's");
+    else if (mission.cruise_path)
         replay.notes.emplace_back(
             "the mission's path is not flown: its duration is planned for, with the model's cruise");
     else if (mission.cruise_level)
@@ -86,6 +107,12 @@ void describe_flight(const LeaveOneOutMission& folded, const mechanical::Measure
         replay.notes.push_back(fmt::format("power measured below 0 counts as 0, which adds {:.3f} Wh", added_wh));
 }
 
+/// The mission with the lines that a plan has chosen, if it has.
+LeaveOneOutMission with_lines(const LeaveOneOutMission& folded, const MissionSetup& planned) {
+    if (!planned.survey || planned.survey->layout == folded.known.survey->layout) return folded;
+    return {planned, actual_with_lines(folded.known, planned, folded.actual)};
+}
+
 /// Simulates a schedule that was made before the flight.
 ReplayedSchedule replay_schedule(const LeaveOneOutMission& folded, ScheduleMethod way, const Schedule& schedule,
                                  ScheduleOrigin origin) {
@@ -101,39 +128,63 @@ ReplayedSchedule replay_schedule(const LeaveOneOutMission& folded, ScheduleMetho
 ReplayedSchedule replay_plan(const LeaveOneOutMission& folded, const PlanningProblem& problem, ScheduleMethod way,
                              const std::optional<double>& probability = std::nullopt) {
     const auto plan = plan_mission(problem, probability);
-    return replay_schedule(folded, way, plan.mission.schedule, summary_with_origin(plan).schedule);
+    return replay_schedule(with_lines(folded, plan.mission.setup), way, plan.mission.schedule,
+                           summary_with_origin(plan).schedule);
 }
 
-/// The best configuration that, run wherever nothing is fixed, keeps the reserve; else the one of least power.
+/// The best configuration that, run wherever nothing is fixed, keeps the reserve; else the one of least power. Of lines
+/// that are chosen, those with which its utility is greatest.
 ReplayedSchedule invariant(const LeaveOneOutMission& folded, const PlanningProblem& problem,
                            const PlanningTables& planner) {
-    const auto slots = make_slots(problem);
-    const auto schedule_with = [&](std::size_t choice) {
+    const auto schedule_with = [&](const PlanningProblem& of, std::size_t choice) {
         Schedule schedule;
-        for (const auto& slot : slots)
+        for (const auto& slot : make_slots(of))
             append_merged(schedule, {slot, slot.fixed.value_or(planner.configurations[choice])});
         return schedule;
     };
-    // By rising power, all the way: where one does not keep the reserve, none behind it does.
-    std::size_t best = 0;
-    bool any = false;
-    std::size_t low = 0;
-    std::size_t high = planner.free_choices;
-    while (low < high) {
-        const auto middle = low + (high - low) / 2;
-        const bool keeps = simulate(folded.known, schedule_with(middle)).summary.keeps_reserve;
-        any = any || keeps;
-        (keeps ? low : high) = keeps ? middle + 1 : middle;
+    struct Best {
+        bool keeps = false;
+        double utility = 0.0;
+        Schedule schedule;
+        MissionSetup setup;
+    };
+    const auto best_of = [&](const PlanningProblem& of) {
+        // By rising power, all the way: where one does not keep the reserve, none behind it does.
+        Best best;
+        std::size_t choice = 0;
+        std::size_t low = 0;
+        std::size_t high = planner.free_choices;
+        while (low < high) {
+            const auto middle = low + (high - low) / 2;
+            const bool keeps = simulate(of.setup, schedule_with(of, middle)).summary.keeps_reserve;
+            best.keeps = best.keeps || keeps;
+            (keeps ? low : high) = keeps ? middle + 1 : middle;
+        }
+        for (std::size_t other = 0; other < low; ++other)
+            if (planner.utility_per_s[other] > planner.utility_per_s[choice]) choice = other;
+        best.schedule = schedule_with(of, choice);
+        best.utility = planner.utility_per_s[choice] + coverage_utility(of.setup);
+        best.setup = of.setup;
+        return best;
+    };
+    auto best = best_of(problem);
+    for (const auto& layout : problem.survey ? all_layouts(*problem.survey) : std::vector<path::SurveyLayout>()) {
+        try {
+            auto other = best_of(problem.survey->mission_with(layout));
+            if (std::pair(other.keeps, other.utility) > std::pair(best.keeps, best.utility)) best = std::move(other);
+        } catch (const InputError&) {  // its path cannot be flown
+            continue;
+        }
     }
-    for (std::size_t choice = 0; choice < low; ++choice)
-        if (planner.utility_per_s[choice] > planner.utility_per_s[best]) best = choice;
-    return replay_schedule(folded, ScheduleMethod::invariant, schedule_with(best),
-                           any ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
+    return replay_schedule(with_lines(folded, best.setup), ScheduleMethod::invariant, best.schedule,
+                           best.keeps ? ScheduleOrigin::planned : ScheduleOrigin::infeasible);
 }
 
 ReplayedSchedule phased(const LeaveOneOutMission& folded, PlanningProblem problem) {
-    problem.plan.slot_s = std::ranges::max(problem.setup.duration_s.values);
-    problem.plan.dwell_s = 0.0;
+    change(problem, [](PlanningProblem& each) {
+        each.plan.slot_s = std::ranges::max(each.setup.duration_s.values);
+        each.plan.dwell_s = 0.0;
+    });
     return replay_plan(folded, problem, ScheduleMethod::phased);
 }
 
@@ -142,7 +193,7 @@ ReplayedSchedule replanned(const LeaveOneOutMission& folded, const AdaptivePlann
     replayed.way = ScheduleMethod::replanned;
     auto flight = simulate_adaptive(planner, folded.actual, {});
     replayed.schedule = std::move(flight.schedule);
-    replayed.summary = simulate(folded.actual, replayed.schedule).summary;
+    replayed.summary = simulate(flight.setup.value_or(folded.actual), replayed.schedule).summary;
     replayed.summary.schedule = ScheduleOrigin::replanned;
     replayed.summary.decisions = flight.decisions;
     return replayed;
@@ -151,13 +202,15 @@ ReplayedSchedule replanned(const LeaveOneOutMission& folded, const AdaptivePlann
 /// The best schedule for the measured power: a plan, or one of the other schedules if that is better (it may change
 /// between the plan's slots).
 void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Replay& replay) {
-    for (const auto phase : all_phases) {
-        if (folded.known.duration_s[phase] == 0.0) continue;
-        problem.plan.slot_scale[phase] *= folded.actual.duration_s[phase] / folded.known.duration_s[phase];
-    }
-    problem.fixed =
-        rescale_to_flown_durations(std::move(problem.fixed), folded.known.duration_s, folded.actual.duration_s);
-    problem.setup = folded.actual;
+    change(problem, [folded](PlanningProblem& each) {
+        const auto [known, actual] = with_lines(folded, each.setup);
+        for (const auto phase : all_phases) {
+            if (known.duration_s[phase] == 0.0) continue;
+            each.plan.slot_scale[phase] *= actual.duration_s[phase] / known.duration_s[phase];
+        }
+        each.fixed = rescale_to_flown_durations(std::move(each.fixed), known.duration_s, actual.duration_s);
+        each.setup = actual;
+    });
     const auto plan = plan_mission(problem);
     ReplayedSchedule best;
     best.way = ScheduleMethod::hindsight;
@@ -171,7 +224,7 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
         best.summary.decisions.reset();
         best.summary.schedule = ScheduleOrigin::planned;
     }
-    if (plan.plan.feasible) {
+    if (plan.plan.feasible && !problem.survey) {  // in flight lines may change within a block
         replay.bound = plan.plan.utility_bound;
         replay.bound_is_proven = plan.plan.bound_is_proven;
     }
@@ -185,9 +238,11 @@ void add_hindsight(const LeaveOneOutMission& folded, PlanningProblem problem, Re
 
 void replay_planned(const PlanningProblem& stated, const LeaveOneOutMission& folded, Replay& replay) {
     auto problem = stated;
-    problem.setup = folded.known;
-    problem.fixed =
-        rescale_to_flown_durations(std::move(problem.fixed), stated.setup.duration_s, folded.known.duration_s);
+    change(problem, [model = *folded.known.mechanical](PlanningProblem& each) {
+        const auto stated_s = each.setup.duration_s;
+        each.setup = nominal_mission(each.setup, model);
+        each.fixed = rescale_to_flown_durations(std::move(each.fixed), stated_s, each.setup.duration_s);
+    });
     if (!problem.adaptive) {
         problem.adaptive.emplace();
         problem.adaptive->decide_every_s = problem.plan.slot_s;
@@ -241,7 +296,7 @@ Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFligh
     const auto& stated = setup_of(mission);
     auto known = nominal_mission(stated, model);
     auto actual = measured_mission(known, flight);
-    const LeaveOneOutMission folded{std::move(known), std::move(actual)};
+    LeaveOneOutMission folded{std::move(known), std::move(actual)};
     Replay replay;
     replay.flight = flight.samples.flight;
     replay.mission = stated.name;
@@ -250,6 +305,10 @@ Replay replay_one(const MissionVariant& mission, const mechanical::MeasuredFligh
     replay.model_saw_flight = saw(replay.model_flights, replay.flight);
     add_notes(stated, flight, replay);
     describe_flight(folded, flight, replay);
+    if (stated.survey && stated.survey->is_chosen) {
+        folded.actual.duration_s[Phase::cruise] = folded.known.duration_s[Phase::cruise];
+        folded.actual = actual_with_lines(folded.known, folded.known, folded.actual);
+    }
     if (const auto* scheduled = std::get_if<Mission>(&mission))
         replay.schedules.push_back(
             replay_schedule(folded, ScheduleMethod::given,

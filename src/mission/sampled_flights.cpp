@@ -25,9 +25,14 @@ void schedule_flight(const PreparedMission& prepared, const Disturbances& as_pla
     const auto& planned_s = prepared.setup.duration_s;
     auto& setup = flight.setup;
     const auto disturbances = rescale_to_flown_durations(as_planned, planned_s, setup.duration_s);
-    const auto schedule = prepared.adaptive
-                              ? simulate_adaptive(*prepared.adaptive, setup, disturbances).schedule
-                              : rescale_to_flown_durations(prepared.schedule, planned_s, setup.duration_s);
+    Schedule schedule;
+    if (prepared.adaptive) {
+        auto flown = simulate_adaptive(*prepared.adaptive, setup, disturbances);
+        schedule = std::move(flown.schedule);
+        if (flown.setup) setup = std::move(*flown.setup);
+    } else {
+        schedule = rescale_to_flown_durations(prepared.schedule, planned_s, setup.duration_s);
+    }
     flight.times_s = times_s;
     for (auto& time_s : flight.times_s) time_s = rescale_to_flown_durations_s(time_s, planned_s, setup.duration_s);
     flight.segments = disturbed(load_segments(setup, schedule), disturbances, flight.times_s);

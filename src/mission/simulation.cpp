@@ -145,6 +145,10 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.power_model = mission.power_model;
+    if (mission.survey && mission.survey->is_chosen) {
+        summary.lines = mission.survey->layout;
+        summary.coverage = mission.survey->coverage;
+    }
     summary.reserve_soc_percent = mission.reserve_soc_percent;
     summary.keeps_reserve = summary.feasible && *summary.final_soc_percent >= mission.reserve_soc_percent;
     return summary;

@@ -5,7 +5,9 @@
 #include "path/plans/kml.h"
 #include "path/waypoint_files.h"
 
+#include <algorithm>
 #include <regex>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,41 +41,136 @@ AreaOutlines kml_area(std::string_view text, const std::string& file) {
     return found;
 }
 
-}  // namespace
-
-PlanEntries parse_area(std::string_view text, const std::string& file, double spacing_m, double heading_deg) {
-    const auto outlines =
-        plan_format(text) == PlanFormat::flight_plan ? kml_area(text, file) : geojson_area(text, file);
+/// Reads the areas of a file, in metres from the first corner. Throws InputError.
+SurveyedArea local_area(const AreaOutlines& outlines, const std::string& file) {
     if (outlines.areas.empty()) throw InputError({file}, "has no polygon to fly over", expected);
-    for (const auto* polygons : {&outlines.areas, &outlines.closed})
-        for (const auto& polygon : *polygons)
-            if (polygon.size() < 3)
-                throw InputError({file}, fmt::format("a polygon has {} corners", polygon.size()), expected);
     std::size_t closed_corners = 0;
     for (const auto& polygon : outlines.closed) closed_corners += polygon.size();
     if (closed_corners > max_closed_corners)
         throw InputError({file}, fmt::format("its holes and no-fly zones have {} corners", closed_corners),
                          fmt::format("draw them with at most {}", max_closed_corners));
-    const auto& origin = outlines.areas.front().front();
     const auto local = [&](const std::vector<Outline>& polygons) {
         std::vector<Polygon> found;
         for (const auto& polygon : polygons) {
+            if (polygon.size() < 3)
+                throw InputError({file}, fmt::format("a polygon has {} corners", polygon.size()), expected);
             found.emplace_back();
-            for (const auto& corner : polygon) found.back().push_back(to_local(corner, origin));
+            for (const auto& corner : polygon) found.back().push_back(to_local(corner, outlines.areas.front().front()));
         }
         return found;
     };
+    return {local(outlines.areas), local(outlines.closed)};
+}
+
+/// The layout's strips from left to right, with the lines of each.
+struct LinedStrip {
+    const SurveyStrip* strip = nullptr;
+    double left_m = 0.0;
+    double right_m = 0.0;
+    std::vector<SurveyLine> lines = {};
+};
+
+double area_between_m2(const LinedPolygon& polygon, double left_m, double right_m) {
+    constexpr int slices = 400;
+    double area_m2 = 0.0;
+    const double width_m = (right_m - left_m) / slices;
+    for (int i = 0; i < slices; ++i)
+        if (const auto line = polygon.line_at(left_m + (i + 0.5) * width_m))
+            area_m2 += width_m * distance_between_m(line->from, line->to);
+    return area_m2;
+}
+
+/// The strips in the order of flight, from the right if `is_reversed`.
+std::vector<LinedStrip> lined_strips(const LinedPolygon& polygon, const SurveyLayout& layout, bool is_reversed) {
+    const double width_m = polygon.right_m() - polygon.left_m();
+    std::vector<LinedStrip> strips;
+    double from_m = is_reversed ? polygon.right_m() : polygon.left_m();
+    for (const auto& strip : layout.strips) {
+        double to_m = is_reversed ? polygon.right_m() - strip.to * width_m : polygon.left_m() + strip.to * width_m;
+        if (strip.to >= 1.0) to_m = is_reversed ? polygon.left_m() : polygon.right_m();
+        LinedStrip lined{&strip, std::min(from_m, to_m), std::max(from_m, to_m)};
+        lined.lines = polygon.lines_between(lined.left_m, lined.right_m, strip.spacing_m);
+        if (is_reversed) std::ranges::reverse(lined.lines);
+        strips.push_back(std::move(lined));
+        from_m = to_m;
+    }
+    return strips;
+}
+
+/// Appends the lines of a layout over one polygon, in its strips.
+void write_strips(const PatternWriter& writer, const Polygon& corners, const SurveyLayout& layout, SurveyPlan& survey) {
+    const LinedPolygon polygon(corners, layout.heading_deg);
+    const double width_m = polygon.right_m() - polygon.left_m();
+    // The side to begin at is that of the first strip's spacing over all of the area, whatever the others are.
+    const auto& first = layout.strips.front();
+    const bool is_reversed = begins_with_last(
+        survey_lines(corners, first.spacing_m, layout.heading_deg, writer.like.where), corners.front());
+    std::vector<SurveyLine> lines;
+    std::vector<const SurveyStrip*> strip_of;
+    for (const auto& strip : lined_strips(polygon, layout, is_reversed)) {
+        auto& cover = survey.strips.emplace_back();
+        cover.area_m2 = area_between_m2(polygon, strip.left_m, strip.right_m);
+        for (std::size_t i = 0; i < strip.lines.size(); ++i) {
+            cover.lines_m += distance_between_m(strip.lines[i].from, strip.lines[i].to);
+            lines.push_back(strip.lines[i]);
+            strip_of.push_back(strip.strip);
+            // The lines are at whole spacings from the left edge.
+            const double k = static_cast<double>(is_reversed ? strip.lines.size() - 1 - i : i + 1);
+            const double edge_m = strip.left_m + k * strip.strip->spacing_m;
+            const double to =
+                is_reversed ? (polygon.right_m() - edge_m) / width_m : (edge_m - polygon.left_m()) / width_m;
+            survey.line_to.push_back(i + 1 == strip.lines.size() ? strip.strip->to : to);
+        }
+    }
+    if (lines.size() > static_cast<std::size_t>(max_survey_lines) || lines.empty())
+        throw InputError(writer.like.where,
+                         fmt::format("{} lines fit into the area, expected 1 to 5000", lines.size()));
+    const auto spacing_m = layout.strips.size() == 1 ? std::optional(first.spacing_m) : std::nullopt;
+    writer.lines_in_order(std::move(lines), spacing_m, corners.front());
+    for (auto& entry : survey.entries)
+        if (entry.survey_line > 0) entry.airspeed_m_per_s = strip_of[entry.survey_line - 1]->airspeed_m_per_s;
+}
+
+/// Appends the lines of one spacing over an area that is divided.
+void write_cells(const PatternWriter& writer, const SurveyedArea& area, const SurveyLayout& layout,
+                 SurveyPlan& survey) {
+    if (layout.strips.size() > 1)
+        throw InputError(writer.like.where,
+                         "lines of several spacings do not fit an area of several polygons, or with notches or holes",
+                         "give one spacing_m, or divide the area into simple ones");
+    const auto& strip = layout.strips.front();
+    const auto lines = write_area_survey(writer, area, strip.spacing_m, layout.heading_deg);
+    if (ClosedZones(area.closed, 0.0).are_crossed(lines.back().to, area.areas.front().front()))
+        survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
+    auto& cover = survey.strips.emplace_back();
+    cover.area_m2 = open_area_m2(area, layout.heading_deg);
+    for (const auto& line : lines) {
+        cover.lines_m += distance_between_m(line.from, line.to);
+        survey.line_to.push_back(cover.lines_m);
+    }
+    for (double& to : survey.line_to) to /= cover.lines_m;
+    for (auto& entry : survey.entries) entry.airspeed_m_per_s = strip.airspeed_m_per_s;
+}
+
+}  // namespace
+
+SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout) {
+    const auto outlines =
+        plan_format(text) == PlanFormat::flight_plan ? kml_area(text, file) : geojson_area(text, file);
+    const auto area = local_area(outlines, file);
     PathEntry like;
     like.name = "the survey of the area";
     like.where = {file};
-    PlanEntries survey;
+    SurveyPlan survey;
     survey.starts_at_first_place = true;
-    const SurveyedArea area{local(outlines.areas), local(outlines.closed)};
-    if (!write_area_survey({like, survey.entries}, area, spacing_m, heading_deg))
-        survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
+    const PatternWriter writer{like, survey.entries};
+    if (is_divided(area, layout.strips.front().spacing_m, layout.heading_deg, like.where))
+        write_cells(writer, area, layout, survey);
+    else
+        write_strips(writer, area.areas.front(), layout, survey);
     for (auto& entry : survey.entries) {
         if (!entry.place) continue;
-        entry.geographic = to_geodetic(*entry.place, origin);
+        entry.geographic = to_geodetic(*entry.place, outlines.areas.front().front());
         entry.place.reset();
     }
     return survey;

@@ -187,6 +187,7 @@ class PathBuilder {
         element.airspeed_m_per_s = entry.airspeed_m_per_s.value_or(defaults_.airspeed_m_per_s);
         element.altitude_change_m = change_m_;
         element.is_turn = entry.is_turn;
+        element.survey_line = entry.survey_line;
         element.climb_rate_m_per_s = rate_of(entry);
         element.name = entry.name;
         element.where = entry.where;

@@ -43,6 +43,7 @@ struct PathEntry {
     bool to_right = true;
     bool is_turn = false;  ///< the circles are part of a pattern, and are not repeated
     std::optional<double> hold_s;
+    std::size_t survey_line = 0;  ///< the line of a survey that it flies or leads to, from 1; 0: none
 };
 
 /// A number that waypoints and legs may have in addition to their place.

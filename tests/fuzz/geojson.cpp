@@ -7,6 +7,6 @@
 
 void flightwatt::fuzz::run(std::string_view bytes) {
     const bool is_area = bytes.starts_with('<') || bytes.find("Polygon") != std::string_view::npos;
-    if (is_area) return fly(path::parse_area(bytes, "fuzz.kml", 50.0, 30.0));
+    if (is_area) return fly(path::parse_area(bytes, "fuzz.kml", {30.0, {{50.0}}}));
     fly({path::parse_geojson(bytes, "fuzz.geojson")});
 }

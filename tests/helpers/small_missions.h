@@ -282,12 +282,15 @@ class EverySchedule {
     }
 
     void carry(const std::vector<State>& states, std::size_t i, std::size_t choice, std::vector<State>& to) const {
-        const auto segment = mission::load_segments(load_, {slots_[i], choices_[choice].run}).front();
-        const auto power_w = [&](double time_s) { return mission::power_w(segment, time_s); };
+        const auto segments = mission::load_segments(load_, {slots_[i], choices_[choice].run});  // several on a path
         for (const auto& state : states) {
-            const auto end =
-                battery::discharge(problem_.setup.battery, {power_w, segment.start_s, segment.end_s},
-                                   {state.soc_percent, state.rc_voltage_v}, {2.0, problem_.setup.cutoff_voltage_v});
+            battery::Discharge end{{state.soc_percent, state.rc_voltage_v}};
+            for (const auto& segment : segments) {
+                const auto power_w = [&](double time_s) { return mission::power_w(segment, time_s); };
+                end = battery::discharge(problem_.setup.battery, {power_w, segment.start_s, segment.end_s}, end,
+                                         {2.0, problem_.setup.cutoff_voltage_v});
+                if (end.ended_at_s() || end.undeliverable) break;
+            }
             if (end.ended_at_s() || end.undeliverable) continue;
             to.push_back({end.soc_percent, end.rc_voltage_v,
                           state.utility + choices_[choice].utility_per_s * slots_[i].duration_s()});

@@ -52,7 +52,7 @@ TEST(FlightReplanner, LearnsThePowerThatIsFlown) {
 
 TEST(FlightReplanner, RunsWhatDemandsLeastFromHereOnWhereNoPlanKeepsTheReserve) {
     const auto adaptive = planner();
-    const FlightReplanner decider(adaptive);
+    FlightReplanner decider(adaptive);
     const auto poor = decider.replan({Phase::cruise, 200.0}, {10.0, 0.0});
     EXPECT_FALSE(poor.feasible);
     ASSERT_FALSE(poor.schedule.empty());

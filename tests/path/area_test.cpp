@@ -34,26 +34,26 @@ double length_m(const PlanEntries& survey) {
 }
 
 TEST(Areas, AreCoveredByLines) {
-    const auto area = parse_area(geojson(ring), "a.geojson", 50.0, 0.0);
+    const auto area = parse_area(geojson(ring), "a.geojson", {0.0, {{50.0}}});
     EXPECT_NEAR(length_m(area), 8.0 * 400.0 + 7.0 * 78.54, 15.0);
-    EXPECT_NEAR(length_m(parse_area(geojson(ring), "a.geojson", 50.0, 90.0)), length_m(area), 15.0);
+    EXPECT_NEAR(length_m(parse_area(geojson(ring), "a.geojson", {90.0, {{50.0}}})), length_m(area), 15.0);
     EXPECT_TRUE(area.not_flown.empty());
     const auto kml = R"(<kml><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>
 8.0,47.0,0 8.00526,47.0,0 8.00526,47.0036,0 8.0,47.0036,0 8.0,47.0,0
 </coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>)";
-    EXPECT_NEAR(length_m(parse_area(kml, "a.kml", 50.0, 0.0)), length_m(area), 1e-6);
+    EXPECT_NEAR(length_m(parse_area(kml, "a.kml", {0.0, {{50.0}}})), length_m(area), 1e-6);
 }
 
 TEST(Areas, HaveHolesAndZonesThatAreNotFlownOver) {
     constexpr auto hole = "[[8.0015,47.001],[8.0035,47.001],[8.0035,47.0025],[8.0015,47.0025],[8.0015,47.001]]";
-    const double with_hole_m = length_m(parse_area(geojson(fmt::format("{},{}", ring, hole)), "a", 20.0, 0.0));
-    EXPECT_LT(with_hole_m, length_m(parse_area(geojson(ring), "a", 20.0, 0.0)) - 500.0);
+    const double with_hole_m = length_m(parse_area(geojson(fmt::format("{},{}", ring, hole)), "a", {0.0, {{20.0}}}));
+    EXPECT_LT(with_hole_m, length_m(parse_area(geojson(ring), "a", {0.0, {{20.0}}})) - 500.0);
     const auto features = fmt::format(
         R"({{"type":"FeatureCollection","features":[
 {{"type":"Feature","geometry":{{"type":"MultiPolygon","coordinates":[[{}]]}},"properties":{{"name":"field"}}}},
 {{"type":"Feature","geometry":{{"type":"Polygon","coordinates":[{}]}},"properties":{{"no_fly":true}}}}]}})",
         ring, hole);
-    EXPECT_NEAR(length_m(parse_area(features, "a", 20.0, 0.0)), with_hole_m, 1e-6);
+    EXPECT_NEAR(length_m(parse_area(features, "a", {0.0, {{20.0}}})), with_hole_m, 1e-6);
     const auto outline = [](const char* places) {
         return fmt::format("<LinearRing><coordinates>{}</coordinates></LinearRing>", places);
     };
@@ -62,20 +62,55 @@ TEST(Areas, HaveHolesAndZonesThatAreNotFlownOver) {
     EXPECT_NEAR(length_m(parse_area(fmt::format("<kml><Placemark><Polygon><outerBoundaryIs>{}</outerBoundaryIs>"
                                                 "<innerBoundaryIs>{}</innerBoundaryIs></Polygon></Placemark></kml>",
                                                 field, house),
-                                    "a.kml", 20.0, 0.0)),
+                                    "a.kml", {0.0, {{20.0}}})),
                 with_hole_m, 1e-6);
     EXPECT_NEAR(
         length_m(parse_area(fmt::format("<kml><Placemark><Polygon><outerBoundaryIs>{}</outerBoundaryIs></Polygon>"
                                         "</Placemark><Placemark><name>No-fly: school</name><Polygon>"
                                         "<outerBoundaryIs>{}</outerBoundaryIs></Polygon></Placemark></kml>",
                                         field, house),
-                            "a.kml", 20.0, 0.0)),
+                            "a.kml", {0.0, {{20.0}}})),
         with_hole_m, 1e-6);
+}
+
+/// Strips are of the width in the order of flight; a strip cut at the end of a line has the same lines.
+TEST(Areas, AreCoveredByStrips) {
+    for (const double heading_deg : {0.0, 180.0, 90.0}) {
+        const auto whole = parse_area(geojson(ring), "a", {heading_deg, {{50.0}}});
+        ASSERT_EQ(whole.line_to.size(), 8U) << heading_deg;
+        EXPECT_EQ(whole.line_to.back(), 1.0);
+        EXPECT_NEAR(whole.strips.front().area_m2, 400.0 * 400.0, 800.0);
+        EXPECT_NEAR(whole.strips.front().lines_m, 8.0 * 400.0, 10.0);
+        const auto cut = parse_area(geojson(ring), "a", {heading_deg, {{50.0, whole.line_to[2]}, {100.0, 1.0, 14.0}}});
+        ASSERT_EQ(cut.strips.size(), 2U);
+        EXPECT_NEAR(cut.strips[0].lines_m, 3.0 * 400.0, 5.0);
+        EXPECT_NEAR(cut.strips[1].area_m2, 5.0 / 8.0 * 400.0 * 400.0, 500.0);
+        EXPECT_DOUBLE_EQ(cut.line_to[2], whole.line_to[2]);
+        for (std::size_t i = 0; i < cut.entries.size(); ++i) {
+            const auto line = cut.entries[i].survey_line;
+            EXPECT_EQ(cut.entries[i].airspeed_m_per_s.has_value(), line > 3);
+            if (line > 3 || !cut.entries[i].geographic) continue;
+            EXPECT_NEAR(cut.entries[i].geographic->latitude_deg, whole.entries[i].geographic->latitude_deg, 1e-10);
+            EXPECT_NEAR(cut.entries[i].geographic->longitude_deg, whole.entries[i].geographic->longitude_deg, 1e-10);
+        }
+    }
+}
+
+TEST(Areas, ThatAreDividedHaveOneSpacing) {
+    constexpr auto hole = "[[8.0015,47.001],[8.0035,47.001],[8.0035,47.0025],[8.0015,47.0025],[8.0015,47.001]]";
+    const auto text = geojson(fmt::format("{},{}", ring, hole));
+    const auto area = parse_area(text, "a", {0.0, {{20.0}}});
+    EXPECT_EQ(area.line_to.back(), 1.0);
+    EXPECT_NEAR(area.strips.front().area_m2, 400.0 * 400.0 - 152.0 * 167.0, 800.0);
+    EXPECT_NE(rejected([&] {
+                  parse_area(text, "a", {0.0, {{20.0, 0.5}, {40.0}}});
+              }).find("of several spacings"),
+              std::string::npos);
 }
 
 TEST(Areas, ArePolygons) {
     const auto refusal = [](const std::string& text, double spacing_m = 50.0) {
-        return rejected([&] { parse_area(text, "a", spacing_m, 0.0); });
+        return rejected([&] { parse_area(text, "a", {0.0, {{spacing_m}}}); });
     };
     EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[1,2]})"),
               "a: is a Point, which is no area; expected GeoJSON: Polygons, alone, as features or in a "

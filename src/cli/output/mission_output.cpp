@@ -22,6 +22,23 @@ Fields<HeldOutScore> record_fields(const HeldOutScore*) {
 
 }  // namespace flightwatt::mechanical
 
+namespace flightwatt::path {
+
+Fields<SurveyStrip> record_fields(const SurveyStrip*) {
+    using R = SurveyStrip;
+    return {field("to", &R::to, "part of the width up to which it covers, in the order of flight"),
+            field("spacing_m", &R::spacing_m, "distance between its lines"),
+            field("airspeed_m_per_s", &R::airspeed_m_per_s, "if it was chosen", optional_key{})};
+}
+
+Fields<SurveyLayout> record_fields(const SurveyLayout*) {
+    using R = SurveyLayout;
+    return {field("heading_deg", &R::heading_deg, "course of the first line, or its reverse"),
+            field("strips", &R::strips, "parts of the area, in the order of flight")};
+}
+
+}  // namespace flightwatt::path
+
 namespace flightwatt::mission {
 
 Fields<UncertaintySources> record_fields(const UncertaintySources*) {
@@ -106,6 +123,8 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
         field("power_model", &R::power_model, "model of the (cruise) power and its error", optional_key{}),
         field("utility", &R::utility, "mean utility per second", column_if_any("", ".3f"), csv_column{},
               optional_key{}),
+        field("lines", &R::lines, "lines over an area, if they were chosen", optional_key{}),
+        field("coverage", &R::coverage, "how often they see a place on average", optional_key{}),
         embedded_if_any(&R::decisions), embedded_if_any(&R::samples),
         field("with_capacity_of_flights", &R::by_flights, "with the capacity by the pack's flights, if it differs",
               optional_key{}));
@@ -222,6 +241,9 @@ Fields<PlanOutput> record_fields(const PlanOutput*) {
         field("bound", at(&R::plan, bound), "no schedule has a greater utility"),
         field("final_soc_percent", at(&R::plan, &P::summary, &S::final_soc_percent), "at the end"),
         field("reserve_soc_percent", at(&R::setup, &Setup::reserve_soc_percent), "reserve"),
+        field("lines", at(&R::plan, &P::summary, &S::lines), "lines over an area, if they were chosen", optional_key{}),
+        field("coverage", at(&R::plan, &P::summary, &S::coverage), "how often they see a place on average",
+              optional_key{}),
         field("margin_percent", at(&R::plan, &P::margin_percent), "above the reserve, for `--probability`"),
         field("power_model", at(&R::setup, &Setup::power_model), "model of the (cruise) power", optional_key{}),
         embedded_if_any([](const R& r) { return r.plan->sources ? &*r.plan->sources : nullptr; }),

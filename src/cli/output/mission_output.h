@@ -19,6 +19,10 @@ namespace flightwatt::mechanical {
 Fields<HeldOutScore> record_fields(const HeldOutScore*);
 }
 
+namespace flightwatt::path {
+Fields<SurveyLayout> record_fields(const SurveyLayout*);
+}
+
 namespace flightwatt::mission {
 Fields<UncertaintySources> record_fields(const UncertaintySources*);
 Fields<EstimatedLanding> record_fields(const EstimatedLanding*);

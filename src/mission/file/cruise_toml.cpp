@@ -2,6 +2,8 @@
 
 #include "base/input_file.h"
 #include "mission/file/named_file.h"
+#include "mission/file/planning_toml.h"
+#include "mission/planning/survey_layouts.h"
 #include "path/area.h"
 #include "path/cruise_path.h"
 #include "path/path_entries.h"
@@ -12,6 +14,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -128,14 +132,121 @@ path::PathEntry read_leg(const TomlTable& leg, std::size_t number) {
     return entry;
 }
 
-void read_path_airspeed(const TomlTable& path, path::PathDefaults& defaults) {
-    defaults.airspeed_m_per_s = number_in(more_than_up_to(0.0, path::max_m_per_s), path, "airspeed_m_per_s");
+constexpr auto airspeeds = more_than_up_to(0.0, path::max_m_per_s);
+constexpr auto spacings = between(path::min_radius_m, path::max_radius_m);
+constexpr auto headings = between(-360.0, 360.0);
+
+/// The values of a key: a number, or those that a plan chooses between.
+std::vector<double> read_levels(const TomlTable& path, std::string_view key, NumberRange range) {
+    if (!path.is_table(key)) return {number_in(range, path, key)};
+    const auto table = path.table(key);
+    table.refuse_keys_except({"min", "max", "steps", "levels", "blocks"});
+    if (key != "spacing_m" && table.has("blocks"))
+        throw InputError(table.where("blocks"), "blocks belongs to spacing_m", "leave it out");
+    if (table.has("levels")) {
+        for (const auto* other : {"min", "max", "steps"})
+            if (table.has(other))
+                throw InputError(table.where(other), fmt::format("{} and levels are two choices", other), "give one");
+        auto levels = table.numbers("levels");
+        if (levels.size() < 2)
+            throw InputError(table.where("levels"), "fewer than two levels leave no choice", "give a number instead");
+        for (const double level : levels) require_in(range, level, key, table.where("levels"));
+        return levels;
+    }
+    constexpr std::uint64_t usual_steps = 5;
+    const double min = number_in(range, table, "min");
+    const double max = number_in(more_than_up_to(min, range.high), table, "max");
+    const auto steps = static_cast<std::size_t>(count_in_or(table, "steps", 2, usual_steps));
+    require_in(at_most(max_survey_layouts), static_cast<double>(steps), "steps", table.where("steps"));
+    std::vector<double> levels;
+    for (std::size_t i = 0; i < steps; ++i)
+        levels.push_back(min + (max - min) * static_cast<double>(i) / static_cast<double>(steps - 1));
+    return levels;
 }
 
-path::PathDefaults read_defaults(const TomlTable& path) {
+std::vector<path::SurveyStrip> read_strips(const TomlTable& path) {
+    std::vector<path::SurveyStrip> strips;
+    for (const auto& table : path.tables("strip")) {
+        table.refuse_keys_except({"to", "spacing_m", "airspeed_m_per_s"});
+        const double from = strips.empty() ? 0.0 : strips.back().to;
+        strips.push_back({number_in(spacings, table, "spacing_m"), number_in(more_than_up_to(from, 1.0), table, "to"),
+                          optional_number_in(airspeeds, table, "airspeed_m_per_s")});
+    }
+    if (strips.back().to < 1.0)
+        throw InputError(path.where("strip"), "the last strip ends before the area does", "give it to = 1");
+    return strips;
+}
+
+/// The lines over the area of a path.
+path::SurveyLayout read_layout(const TomlTable& path, const MissionReadOptions& reading) {
+    if (reading.survey) return *reading.survey;
+    if (path.has("spacing_m") == path.has("strip") || !path.has("heading_deg"))
+        throw InputError(path.where("area"), "an area needs spacing_m and heading_deg",
+                         "give the distance between its lines, spacing_m = 30, or [[path.strip]], and their direction "
+                         "clockwise from north, heading_deg = 90");
+    path::SurveyLayout layout{read_levels(path, "heading_deg", headings).front(), {}};
+    if (path.has("strip"))
+        layout.strips = read_strips(path);
+    else
+        layout.strips = {{std::ranges::max(read_levels(path, "spacing_m", spacings))}};
+    if (path.is_table("airspeed_m_per_s"))
+        layout.strips.front().airspeed_m_per_s = read_levels(path, "airspeed_m_per_s", airspeeds).front();
+    return layout;
+}
+
+bool is_chosen(const TomlTable& path) {
+    return std::ranges::any_of(std::array{"spacing_m", "heading_deg", "airspeed_m_per_s"},
+                               [&](const char* key) { return path.is_table(key); });
+}
+
+/// How the lines cover the area, without times.
+SurveyCoverage read_coverage(const TomlTable& path, const path::SurveyLayout& layout, const path::SurveyPlan& survey) {
+    SurveyCoverage coverage{layout, is_chosen(path)};
+    for (const double to : survey.line_to) coverage.lines.push_back({0.0, 0.0, to});
+    if (path.has("swath_m") != path.has("utility"))
+        throw InputError(path.where(), "swath_m and utility belong together", "add the other, or leave this out");
+    if (!path.has("utility")) return coverage;
+    const double swath_m = number_in(spacings, path, "swath_m");
+    const auto utility = read_utility(path.table("utility"), {path.file(), {"coverage"}, {{0.0}}, {}});
+    double area_m2 = 0.0;
+    double lines_m = 0.0;
+    double sum = 0.0;
+    for (const auto& strip : survey.strips) {
+        if (!(strip.area_m2 > 0.0)) continue;
+        area_m2 += strip.area_m2;
+        lines_m += strip.lines_m;
+        sum += strip.area_m2 * utility_per_s(utility, {swath_m * strip.lines_m / strip.area_m2});
+    }
+    coverage.coverage = swath_m * lines_m / area_m2;
+    coverage.utility = sum / area_m2;
+    return coverage;
+}
+
+/// Sets when each line of a survey is flown.
+void set_line_times(const path::FlightPath& path, const path::PathTrajectory& flown, SurveyCoverage& survey) {
+    double start_s = 0.0;
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < path.elements.size(); ++i) {
+        const double end_s = start_s + flown.element_s[i];
+        if (const auto line = path.elements[i].survey_line; line > 0) {
+            auto& time = survey.lines[line - 1];
+            if (std::exchange(last, line) != line) time.start_s = start_s;
+            time.end_s = end_s;
+        }
+        start_s = end_s;
+    }
+}
+
+void read_path_airspeed(const TomlTable& path, const MissionSetup& mission, path::PathDefaults& defaults) {
+    const bool is_in_layout = mission.survey && path.is_table("airspeed_m_per_s");
+    defaults.airspeed_m_per_s = is_in_layout ? *mission.survey->layout.strips.front().airspeed_m_per_s
+                                             : number_in(airspeeds, path, "airspeed_m_per_s");
+}
+
+path::PathDefaults read_defaults(const TomlTable& path, const MissionSetup& mission) {
     path::PathDefaults defaults;
     defaults.where = path.where();
-    if (!path.has("waypoints") || path.has("airspeed_m_per_s")) read_path_airspeed(path, defaults);
+    if (!path.has("waypoints") || path.has("airspeed_m_per_s")) read_path_airspeed(path, mission, defaults);
     defaults.altitude_m = optional_number_in(between(-1e5, 1e5), path, "altitude_m");
     defaults.rates = read_rates(path);
     defaults.return_to_start = path.optional_boolean("return_to_start").value_or(false);
@@ -157,32 +268,32 @@ void require_one_file(const TomlTable& path) {
             throw InputError(path.where(file), fmt::format("{} and {} are two paths", named, file), "give one");
         named = file;
     }
-    constexpr std::array<std::pair<const char*, const char*>, 5> keys{{{"blocks", "flight_plan"},
+    constexpr std::array<std::pair<const char*, const char*>, 8> keys{{{"blocks", "flight_plan"},
                                                                        {"waypoint_order", "flight_plan"},
                                                                        {"radius_m", "flight_plan or waypoints"},
                                                                        {"spacing_m", "area"},
-                                                                       {"heading_deg", "area"}}};
+                                                                       {"heading_deg", "area"},
+                                                                       {"strip", "area"},
+                                                                       {"swath_m", "area"},
+                                                                       {"utility", "area"}}};
     for (const auto& [key, file] : keys)
         if (path.has(key) && (named.empty() || std::string_view(file).find(named) == std::string_view::npos))
             throw InputError(path.where(key), fmt::format("{} belongs to {}", key, file), "add it, or leave this out");
 }
 
 /// Movements of the file that the path names; none without one. A flight plan has an origin and a ground.
-path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::PathDefaults& defaults) {
-    require_one_file(path);
+path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::PathDefaults& defaults,
+                               MissionSetup& mission) {
     const path::AutopilotSettings settings{
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"),
         defaults.airspeed_m_per_s, is_rotorcraft};
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
-        if (!path.has("spacing_m") || !path.has("heading_deg"))
-            throw InputError(path.where("area"), "an area needs spacing_m and heading_deg",
-                             "give the distance between its lines, spacing_m = 30, and their direction clockwise from "
-                             "north, heading_deg = 90");
         const auto file = named_file(path, "area");
-        const double spacing_m = number_in(between(path::min_radius_m, path::max_radius_m), path, "spacing_m");
-        return path::parse_area(read_file(file), file.string(), spacing_m,
-                                number_in(between(-360.0, 360.0), path, "heading_deg"));
+        const auto layout = mission.survey->layout;
+        auto survey = path::parse_area(read_file(file), file.string(), layout);
+        mission.survey = read_coverage(path, layout, survey);
+        return survey;
     }
     if (!path.has("flight_plan")) return {};
     if (path.has("blocks") == path.has("waypoint_order")) {
@@ -204,13 +315,13 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
 /// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
 std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
     const bool is_rotorcraft = mission.mechanical && mission.mechanical->is_rotorcraft;
-    auto plan = read_planned(path, is_rotorcraft, defaults);
+    auto plan = read_planned(path, is_rotorcraft, defaults, mission);
     if (!path.has("airspeed_m_per_s") && plan.speed) {
         defaults.airspeed_m_per_s = plan.speed->m_per_s;
         mission.notes.push_back(
             fmt::format("path: airspeed_m_per_s is not stated: {} m/s, {}", plan.speed->m_per_s, plan.speed->source));
     } else if (defaults.airspeed_m_per_s == 0.0) {
-        read_path_airspeed(path, defaults);  // which throws
+        read_path_airspeed(path, mission, defaults);  // which throws
     }
     for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
     auto& entries = plan.entries;
@@ -295,10 +406,13 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
 /// The path as it is drawn, and where it is.
 path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
-    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m", "climb_m_per_s", "descent_m_per_s", "start",
-                              "return_to_start", "waypoints", "flight_plan", "waypoint_order", "blocks", "radius_m",
-                              "area", "spacing_m", "heading_deg", "leg", "max_bank_deg", "turn_radius_m"});
-    auto defaults = read_defaults(table);
+    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",    "climb_m_per_s", "descent_m_per_s", "start",
+                              "return_to_start",  "waypoints",     "flight_plan",   "waypoint_order",  "blocks",
+                              "radius_m",         "area",          "spacing_m",     "heading_deg",     "leg",
+                              "max_bank_deg",     "turn_radius_m", "strip",         "swath_m",         "utility"});
+    require_one_file(table);
+    if (table.has("area")) mission.survey = SurveyCoverage{read_layout(table, reading)};
+    auto defaults = read_defaults(table, mission);
     auto entries = read_entries(table, defaults, mission);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
@@ -311,6 +425,42 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
 }
 
 }  // namespace
+
+std::optional<SurveyChoices> read_survey_choices(const TomlTable& mission_table) {
+    const auto path = mission_table.optional_table("path");
+    if (!path || !path->has("area") || !is_chosen(*path)) return std::nullopt;
+    SurveyChoices choices;
+    choices.headings_deg = read_levels(*path, "heading_deg", headings);
+    if (path->has("strip"))
+        throw InputError(path->where("strip"), "strips are fixed, and a value of [path] is yet to be chosen",
+                         "give spacing_m instead");
+    auto spacings_m = read_levels(*path, "spacing_m", spacings);
+    std::ranges::sort(spacings_m, std::greater());
+    std::vector<std::optional<double>> speeds{std::nullopt};
+    if (path->is_table("airspeed_m_per_s")) {
+        speeds.clear();
+        for (const double speed : read_levels(*path, "airspeed_m_per_s", airspeeds)) speeds.emplace_back(speed);
+    }
+    for (const double spacing_m : spacings_m)
+        for (const auto& speed : speeds) choices.levels.push_back({spacing_m, 1.0, speed});
+    if (path->is_table("spacing_m")) {
+        choices.blocks = static_cast<std::size_t>(count_in_or(path->table("spacing_m"), "blocks", 1, 1));
+        if (!path->has("utility"))
+            throw InputError(path->where("spacing_m"), "the widest lines would be chosen: no coverage has a utility",
+                             "add swath_m, the width that the sensor sees, and utility = { weight = 1 }");
+    }
+    if (mission_table.has("packs"))
+        throw InputError(path->where(), "the lines of a mission over several packs cannot be chosen",
+                         "state spacing_m, heading_deg and airspeed_m_per_s as numbers, or leave [packs] out");
+    const double layouts = static_cast<double>(choices.headings_deg.size()) *
+                           std::pow(static_cast<double>(choices.levels.size()), static_cast<double>(choices.blocks));
+    if (!(layouts <= max_survey_layouts))
+        throw InputError(path->where(),
+                         fmt::format("its lines have {:.3g} combinations, more than {:.0f} to choose from", layouts,
+                                     max_survey_layouts),
+                         "give fewer steps, levels or blocks");
+    return choices;
+}
 
 void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     constexpr std::string_view key = "airspeed_m_per_s";
@@ -372,6 +522,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     for (const auto& note : turned.notes) mission.notes.push_back("path: " + note);
     plan.drawn = std::exchange(plan.path, std::move(turned.path));
     const auto flown = compute_trajectory(plan.path, plan.wind);
+    if (mission.survey && !reading.path_times) set_line_times(plan.path, flown, *mission.survey);
     mission.has_steep_turn = has_steep_turn(flown);
     if (is_physical)
         for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));

@@ -156,7 +156,7 @@ compute::Configuration min_power_configuration(const PlanningProblem& problem) {
 }
 
 PlanningTables make_planning_tables(const PlanningProblem& problem) {
-    if (std::ranges::none_of(problem.setup.utilities, [](const auto& u) { return !!u; })) {
+    if (!has_utility(problem.setup)) {
         throw InputError({problem.setup.file}, "the mission states no utility",
                          "give a component utility = { parameter = ..., weight = ... }");
     }

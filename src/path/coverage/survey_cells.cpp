@@ -105,17 +105,42 @@ std::vector<SurveyCell> survey_cells(const std::vector<Polygon>& areas, const Cl
     return cells;
 }
 
-bool write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m, double course_deg) {
+bool is_divided(const SurveyedArea& area, double spacing_m, double course_deg, const Location& where) {
+    return !area.closed.empty() ||
+           survey_cells(area.areas, ClosedZones({}, 0.0), spacing_m, course_deg, where).size() > 1;
+}
+
+double open_area_m2(const SurveyedArea& area, double course_deg) {
+    constexpr int slices = 400;
+    const ClosedZones zones(area.closed, 0.0);
+    double area_m2 = 0.0;
+    for (const auto& polygon : area.areas) {
+        const auto across = [&](const LocalPosition& corner) { return along_and_across(corner, course_deg).across_m; };
+        const auto [left, right] = std::ranges::minmax(polygon, {}, across);
+        const double width_m = (across(right) - across(left)) / slices;
+        for (int i = 0; i < slices; ++i) {
+            const double offset_m = across(left) + (i + 0.5) * width_m;
+            const auto parts = parts_within(polygon, course_deg, offset_m);
+            for (const auto& part : without(parts, zones.parts_of_line(course_deg, offset_m)))
+                area_m2 += width_m * (part.to_m - part.from_m);
+        }
+    }
+    return area_m2;
+}
+
+std::vector<SurveyLine> write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m,
+                                          double course_deg) {
     const ClosedZones kept_away(area.closed, spacing_m / 2.0);
     const ClosedZones zones(area.closed, 0.0);
     auto cells = survey_cells(area.areas, kept_away, spacing_m, course_deg, writer.like.where);
     auto at = area.areas.front().front();
     auto named = writer.entries.size();  // the entries of a line and of the way to it have its number
-    std::size_t number = 0;
+    std::vector<SurveyLine> flown;
     while (!cells.empty()) {
         const auto cell =
             std::ranges::min_element(cells, {}, [&](const auto& one) { return distance_to_cell_m(at, one); });
-        const auto lines = lines_in_order(std::move(*cell), at);
+        if (begins_with_last(*cell, at)) std::ranges::reverse(*cell);
+        const auto lines = alternating(std::move(*cell), at);
         cells.erase(cell);
         for (std::size_t i = 0; i < lines.size(); ++i) {
             if (i > 0 && is_open(zones, lines[i - 1], lines[i].from, spacing_m)) {
@@ -128,13 +153,15 @@ bool write_area_survey(const PatternWriter& writer, const SurveyedArea& area, do
             }
             writer.fly_to(lines[i].from);
             writer.fly_to(lines[i].to);
+            flown.push_back(lines[i]);
             at = lines[i].to;
-            ++number;
-            for (; named < writer.entries.size(); ++named)
-                writer.entries[named].name += fmt::format(" (line {})", number);
+            for (; named < writer.entries.size(); ++named) {
+                writer.entries[named].name += fmt::format(" (line {})", flown.size());
+                writer.entries[named].survey_line = flown.size();
+            }
         }
     }
-    return !zones.are_crossed(at, area.areas.front().front());
+    return flown;
 }
 
 }  // namespace flightwatt::path

@@ -30,9 +30,16 @@ using SurveyCell = std::vector<SurveyLine>;
 std::vector<SurveyCell> survey_cells(const std::vector<Polygon>& areas, const ClosedZones& closed, double spacing_m,
                                      double course_deg, const Location& where);
 
-/// Appends the lines of the areas, with turns between them as PatternWriter::survey, and ways around closed zones. Lines
-/// end half of the spacing, in which the aircraft turns, before a closed zone. Throws InputError as survey_cells, and
-/// where there is no way to a cell. Returns whether the straight way back to the first corner crosses no closed zone.
-bool write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m, double course_deg);
+/// Returns whether zones, notches or several polygons divide an area. Throws InputError as survey_cells.
+bool is_divided(const SurveyedArea& area, double spacing_m, double course_deg, const Location& where);
+
+/// Returns what of the areas is in no closed zone, by 400 slices along the course of each.
+double open_area_m2(const SurveyedArea& area, double course_deg);
+
+/// Appends the lines of the areas, with turns between them as PatternWriter::survey, and ways around closed zones; returns
+/// them as they are flown. They end half of the spacing, in which the aircraft turns, before a closed zone. Throws
+/// InputError as survey_cells, and where there is no way to a cell.
+std::vector<SurveyLine> write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m,
+                                          double course_deg);
 
 }  // namespace flightwatt::path

@@ -48,21 +48,50 @@ std::vector<double> line_crossings(const Polygon& polygon, double course_deg, do
     return crossings;
 }
 
-std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
-                                     const Location& where) {
+LinedPolygon::LinedPolygon(const Polygon& polygon, double course_deg) : polygon_(polygon), course_deg_(course_deg) {
     const auto offset = [&](const LocalPosition& corner) { return along_and_across(corner, course_deg).across_m; };
     const auto [left, right] = std::ranges::minmax(polygon, {}, offset);
+    left_m_ = offset(left);
+    right_m_ = offset(right);
+}
+
+std::optional<SurveyLine> LinedPolygon::line_at(double x) const {
+    const auto crossings = line_crossings(polygon_, course_deg_, x);
+    if (crossings.size() < 2) return std::nullopt;
+    return SurveyLine{place_at({crossings.front(), x}, course_deg_), place_at({crossings.back(), x}, course_deg_)};
+}
+
+std::vector<SurveyLine> LinedPolygon::lines_between(double left_m, double right_m, double spacing_m) const {
     std::vector<SurveyLine> lines;
-    const double first = offset(left) + spacing_m / 2.0;
-    const double count = std::floor((offset(right) + 1e-6 - first) / spacing_m) + 1.0;
-    for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0) {
-        const double x = first + line * spacing_m;
-        const auto crossings = line_crossings(polygon, course_deg, x);
-        if (crossings.size() < 2) continue;
-        lines.push_back({place_at({crossings.front(), x}, course_deg), place_at({crossings.back(), x}, course_deg)});
-    }
+    const double first = left_m + spacing_m / 2.0;
+    const double count = std::floor((right_m + 1e-6 - first) / spacing_m) + 1.0;
+    for (double line = 0.0; line < count && count <= max_survey_lines; line += 1.0)
+        if (const auto fits = line_at(first + line * spacing_m)) lines.push_back(*fits);
+    return lines;
+}
+
+std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
+                                     const Location& where) {
+    const LinedPolygon lined(polygon, course_deg);
+    auto lines = lined.lines_between(lined.left_m(), lined.right_m(), spacing_m);
     if (!lines.empty()) return lines;
     throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000", spacing_m));
+}
+
+bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at) {
+    const auto nearest_m = [&](const SurveyLine& line) {
+        return std::min(distance_between_m(at, line.from), distance_between_m(at, line.to));
+    };
+    return nearest_m(lines.back()) < nearest_m(lines.front());
+}
+
+std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPosition& at) {
+    bool is_back = distance_between_m(at, lines.front().to) < distance_between_m(at, lines.front().from);
+    for (auto& [from, to] : lines) {
+        if (is_back) std::swap(from, to);
+        is_back = !is_back;
+    }
+    return lines;
 }
 
 double distance_between_m(const LocalPosition& a, const LocalPosition& b) {
@@ -148,34 +177,31 @@ void PatternWriter::zamboni(const Zamboni& survey) const {
     }
 }
 
-std::vector<SurveyLine> lines_in_order(std::vector<SurveyLine> lines, const LocalPosition& at) {
-    const auto nearest_m = [&](const SurveyLine& line) {
-        return std::min(distance_between_m(at, line.from), distance_between_m(at, line.to));
-    };
-    if (nearest_m(lines.back()) < nearest_m(lines.front())) std::ranges::reverse(lines);
-    bool is_back = distance_between_m(at, lines.front().to) < distance_between_m(at, lines.front().from);
-    for (auto& [from, to] : lines) {
-        if (is_back) std::swap(from, to);
-        is_back = !is_back;
-    }
-    return lines;
-}
-
-void PatternWriter::turn_onto(const SurveyLine& before, const LocalPosition& next, double spacing_m) const {
+void PatternWriter::turn_onto(const SurveyLine& before, const LocalPosition& next,
+                              const std::optional<double>& spacing_m) const {
     const double course_deg = course_between(before.from, before.to);
     const auto [ahead_m, right_m] = along_and_across(next - before.to, course_deg);
     if (ahead_m > 0.0) fly_to(moved(before.to, ahead_m, course_deg));
-    turn(0.5, std::copysign(spacing_m / 2.0, right_m));
+    turn(0.5, std::copysign(spacing_m.value_or(std::abs(right_m)), right_m) / 2.0);
 }
 
 void PatternWriter::survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const {
-    lines = lines_in_order(std::move(lines), at);
+    if (begins_with_last(lines, at)) std::ranges::reverse(lines);
+    lines_in_order(std::move(lines), spacing_m, at);
+}
+
+void PatternWriter::lines_in_order(std::vector<SurveyLine> lines, const std::optional<double>& spacing_m,
+                                   const LocalPosition& at) const {
+    lines = alternating(std::move(lines), at);
     auto named = entries.size();  // the entries of a line and of the turn before it have its number
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (i > 0) turn_onto(lines[i - 1], lines[i].from, spacing_m);
         fly_to(lines[i].from);
         fly_to(lines[i].to);
-        for (; named < entries.size(); ++named) entries[named].name += fmt::format(" (line {})", i + 1);
+        for (; named < entries.size(); ++named) {
+            entries[named].name += fmt::format(" (line {})", i + 1);
+            entries[named].survey_line = i + 1;
+        }
     }
 }
 

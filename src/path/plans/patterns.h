@@ -2,6 +2,7 @@
 
 #include "path/path_entries.h"
 
+#include <optional>
 #include <vector>
 
 namespace flightwatt::path {
@@ -39,14 +40,37 @@ LocalPosition place_at(const CoursePosition& position, double course_deg);
 /// passes the origin `offset_m` to its right.
 std::vector<double> line_crossings(const Polygon& polygon, double course_deg, double offset_m);
 
+/// Lines over a polygon, all in one direction, from left to right. In a concave polygon a line may cross the outside.
+class LinedPolygon {
+  public:
+    LinedPolygon(const Polygon& polygon, double course_deg);
+
+    double left_m() const { return left_m_; }
+    double right_m() const { return right_m_; }
+    /// Returns the line at a distance to the right of the origin; std::nullopt outside of the polygon.
+    std::optional<SurveyLine> line_at(double right_m) const;
+    /// Returns the lines between two distances, the first one half of the spacing from the left one; none if there would
+    /// be more than 5000.
+    std::vector<SurveyLine> lines_between(double left_m, double right_m, double spacing_m) const;
+
+  private:
+    const Polygon& polygon_;
+    double course_deg_;
+    double left_m_ = 0.0;
+    double right_m_ = 0.0;
+};
+
 /// Returns parallel lines over a polygon, all in the direction `course_deg`, from left to right. The first is half of
-/// the spacing within the polygon. In a concave polygon a line may cross the outside. Throws InputError at `where` if
+/// the spacing within the polygon. Throws InputError at `where` if
 /// no line fits, or more than 5000.
 std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, double course_deg,
                                      const Location& where);
 
-/// Returns the lines in alternating directions, beginning with the line and the end that are nearest to `at`.
-std::vector<SurveyLine> lines_in_order(std::vector<SurveyLine> lines, const LocalPosition& at);
+/// Returns whether the last line of a survey is nearer to a place than the first, and is flown first.
+bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at);
+
+/// Returns lines in alternating directions, the first one from the end that is nearer to `at`.
+std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPosition& at);
 
 double distance_between_m(const LocalPosition& a, const LocalPosition& b);
 
@@ -91,12 +115,18 @@ struct PatternWriter {
     /// Appends a Zamboni survey.
     void zamboni(const Zamboni& survey) const;
 
-    /// Appends half a circle from the end of a line towards the beginning of the next one. Before it the aircraft
-    /// continues until that is abeam.
-    void turn_onto(const SurveyLine& before, const LocalPosition& next, double spacing_m) const;
+    /// Appends half a circle from the end of a line towards the beginning of the next one, as wide as the spacing, or
+    /// without one as the lines are apart. Before it the aircraft continues until that is abeam.
+    void turn_onto(const SurveyLine& before, const LocalPosition& next, const std::optional<double>& spacing_m) const;
 
-    /// Appends the lines as lines_in_order, with turns between them.
+    /// Appends the lines, beginning with the line that is nearest to `at`, as lines_in_order.
     void survey(std::vector<SurveyLine> lines, double spacing_m, const LocalPosition& at) const;
+
+    /// Appends the lines in this order, in alternating directions, beginning with the end that is nearest to `at`.
+    /// Before a turn the aircraft continues until the beginning of the next line is abeam. Without `spacing_m` each turn
+    /// is as wide as its lines are apart.
+    void lines_in_order(std::vector<SurveyLine> lines, const std::optional<double>& spacing_m,
+                        const LocalPosition& at) const;
 
     /// Appends the lines in the same direction: after each half a circle to the left, the way back, and a wider half
     /// circle.

@@ -164,6 +164,9 @@ std::vector<std::string> notes_of(const SimulatedMission& simulated, const Missi
     if (answer.is_unplanned) notes.emplace_back("The longest cruise is that with the least software");
     if (simulated.planned && !simulated.planned->feasible)
         notes.emplace_back("No schedule that keeps the reserve was found: this one needs the least energy");
+    if (summary.lines)
+        notes.push_back(
+            fmt::format("Chosen: {}, {:.3g} times seen", mission::describe(*summary.lines), *summary.coverage));
     if (summary.utility) {
         notes.push_back(fmt::format("Utility {:.4g}", *summary.utility));
         if (simulated.planned && simulated.planned->feasible)

@@ -49,7 +49,7 @@ SimulatedMission simulate_one(const mission::MissionVariant& mission, const miss
     if (problem != nullptr && !problem->adaptive) {
         const auto plan = plan_mission(*problem);
         simulated.planned = PlannedSchedule{plan.plan.feasible, plan.plan.utility_bound};
-        prepared = {problem->setup, plan.mission.schedule, std::nullopt, mission::ScheduleOrigin::planned};
+        prepared = {plan.mission.setup, plan.mission.schedule, std::nullopt, mission::ScheduleOrigin::planned};
         summary = summary_with_origin(plan);
     } else {
         prepared = prepare_mission(mission);
@@ -63,6 +63,7 @@ SimulatedMission simulate_one(const mission::MissionVariant& mission, const miss
     if (has_uncertainty(prepared.setup))
         simulated.simulation.summary.samples =
             sample_flights(prepared, {}, {prepared.adaptive ? flights_drawn_of_policy : flights_drawn, 1, band_times});
+    if (flown.setup) prepared.setup = std::move(*flown.setup);
     simulated.mission = {std::move(prepared.setup), std::move(flown.schedule)};
     return simulated;
 }
