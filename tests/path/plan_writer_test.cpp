@@ -87,10 +87,12 @@ TEST(PlanWriter, WritesWhatIsReadAgain) {
                 EXPECT_EQ(actual.shape.index(), expected.shape.index()) << i;
                 EXPECT_NEAR(length_m(actual), length_m(expected), 1e-3) << i;
                 EXPECT_NEAR(actual.altitude_change_m, expected.altitude_change_m, 1e-6) << i;
-                if (format != PlanFormat::flight_plan)
+                if (format != PlanFormat::flight_plan) {
                     EXPECT_EQ(actual.airspeed_m_per_s, expected.airspeed_m_per_s) << i;
-                if (const auto* hold = std::get_if<Hold>(&actual.shape))
+                }
+                if (const auto* hold = std::get_if<Hold>(&actual.shape)) {
                     EXPECT_EQ(hold->time_s, std::get<Hold>(expected.shape).time_s);
+                }
                 const auto here = local_position_at(again, {i, 1.0});
                 const auto there = local_position_at(plan.path, {i, 1.0});
                 EXPECT_NEAR(std::hypot(here.east_m - there.east_m, here.north_m - there.north_m), 0.0, 0.01) << i;
