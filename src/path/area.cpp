@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t max_closed_corners = 300;
 constexpr const char* expected = "expected polygons, in GeoJSON or KML";
 
-/// Polygons of a placemark whose name says "no-fly" are not flown over.
+/// Polygons of a placemark with "no-fly" in its name are not flown over.
 AreaOutlines kml_area(std::string_view text, const std::string& file) {
     const auto document = load_kml(text, file, expected);
     AreaOutlines found;

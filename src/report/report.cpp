@@ -239,7 +239,8 @@ Json summary_json(const Draft& page, const BatchContent& batch) {
                       .warnings = page.findings.warnings,
                       .notes = page.findings.notes,
                       .figures = {}};
-    for (const auto& [name, text] : aircraft_lines(batch.flights)) output.aircraft.push_back(fmt::format("{}: {}", name, text));
+    for (const auto& [name, text] : aircraft_lines(batch.flights))
+        output.aircraft.push_back(fmt::format("{}: {}", name, text));
     for (std::size_t i = 0; i < page.findings.missions.size(); ++i)
         output.missions.push_back({&page.findings.missions[i], &page.findings.assessments[i]});
     return record_json(output);

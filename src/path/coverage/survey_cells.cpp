@@ -39,12 +39,12 @@ struct LastPiece {
     std::size_t cell = 0;
 };
 
-/// Returns the piece of the line before beside a piece, where these two lie beside each other alone.
+/// Returns the piece of the line before that is next to a piece, where no other piece is next to either.
 const LastPiece* only_neighbour(const LinePart& piece, const std::vector<LinePart>& pieces,
                                 const std::vector<LastPiece>& last) {
-    const auto beside = [&](const LastPiece& other) { return overlap(other.part, piece); };
-    if (std::ranges::count_if(last, beside) != 1) return nullptr;
-    const auto& neighbour = *std::ranges::find_if(last, beside);
+    const auto is_next_to = [&](const LastPiece& other) { return overlap(other.part, piece); };
+    if (std::ranges::count_if(last, is_next_to) != 1) return nullptr;
+    const auto& neighbour = *std::ranges::find_if(last, is_next_to);
     const auto shared = [&](const LinePart& other) { return overlap(other, neighbour.part); };
     return std::ranges::count_if(pieces, shared) == 1 ? &neighbour : nullptr;
 }
@@ -86,9 +86,8 @@ bool is_open(const ClosedZones& zones, const SurveyLine& before, const LocalPosi
     const auto [ahead_m, right_m] = along_and_across(to - before.to, course_deg);
     const auto end = moved(before.to, std::max(ahead_m, 0.0), course_deg);
     const auto beyond = moved(end, spacing_m / 2.0, course_deg);
-    const auto beside = moved(beyond, right_m, course_deg + 90.0);
-    return !zones.are_crossed(before.to, beyond) && !zones.are_crossed(beyond, beside) &&
-           !zones.are_crossed(beside, to);
+    const auto abeam = moved(beyond, right_m, course_deg + 90.0);
+    return !zones.are_crossed(before.to, beyond) && !zones.are_crossed(beyond, abeam) && !zones.are_crossed(abeam, to);
 }
 
 }  // namespace

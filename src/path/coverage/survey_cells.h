@@ -12,18 +12,18 @@ struct SurveyedArea {
     std::vector<Polygon> closed;
 };
 
-/// Lines of a survey that are flown one after another, each beside the one before.
+/// Lines of a survey that are flown one after another, each next to the one before.
 using SurveyCell = std::vector<SurveyLine>;
 
 // Problem: a line that a gap of the area or a closed zone divides is not flown in one piece, and flying each piece in the
 // order of the lines would cross the gap once a line.
 //
-// Cells: from line to line, a piece belongs to the cell of the piece beside it where these two lie beside each other
-// alone; where the area divides or joins, new cells begin (the boustrophedon decomposition of Choset). Each cell is
+// Cells: from line to line, a piece belongs to the cell of the piece next to it if no other piece is next to
+// either; where the area divides or joins, new cells begin (the boustrophedon decomposition of Choset). Each cell is
 // flown by itself, the nearest next.
 //
 // Limits: the order of cells is the nearest neighbour's, not the shortest one. Pieces shorter than 1 m are left out. The
-// strip beside a closed zone in which the aircraft turns is flown by no line.
+// strip along a closed zone in which the aircraft turns is flown by no line.
 
 /// Returns the cells of the areas, in their order, with lines `spacing_m` apart on the course `course_deg`: the first one
 /// half of that within the area. Throws InputError at `where` if no line fits into an area, or more than 5000.

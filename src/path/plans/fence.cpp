@@ -70,7 +70,7 @@ std::vector<std::string> fence_notes(const Json& plan, const std::vector<PathEnt
     try {
         fence = read_fence(plan["geoFence"], *first->geographic);
     } catch (const Json::exception&) {
-        return {"the plan's geofence is not understood: nobody knows whether the path keeps it"};
+        return {"the plan's geofence is not understood: whether the path keeps it is unknown"};
     }
     std::vector<std::string> crossing, outside;
     const ClosedZones excluded(fence.excluded, 0.0);

@@ -31,7 +31,7 @@ TEST(ClosedZones, HaveTheShortestWayAround) {
     const ClosedZones zones({square}, 10.0);
     EXPECT_TRUE(zones.way_around({0, 100}, {300, 100})->empty());
     auto way = zones.way_around({0, 20}, {300, 20});
-    // Two tangents of 103.9 m, two arcs of 3.9 m and 100 m beside the zone.
+    // Two tangents of 103.9 m, two arcs of 3.9 m and 100 m along the zone.
     double length_m = 0.0;
     LocalPosition at{0, 20};
     way->push_back({300, 20});
