@@ -169,7 +169,7 @@ std::size_t empty_sectors(const Velocities& velocities, const Circle& circle) {
     for (const auto& velocity : velocities) {
         const auto air = through_air(circle, velocity);
         const double turns = std::atan2(air[0], air[1]) / (360.0 / units::degree_per_rad) + 1.0;
-        ++counts[static_cast<std::size_t>(turns * sectors + 0.5) % sectors];
+        ++counts[static_cast<std::size_t>(std::lround(turns * sectors)) % sectors];
     }
     std::size_t widest = 0;
     std::size_t empty = 0;

@@ -62,10 +62,10 @@ std::vector<LinePart> ClosedZones::parts_of_line(double course_deg, double offse
 
 bool ClosedZones::are_crossed(const LocalPosition& from, const LocalPosition& to) const {
     const double course_deg = course_between(from, to);
-    const auto [start_m, offset_m] = along_and_across(from, course_deg);
-    const double end_m = start_m + distance_between_m(from, to);
-    return std::ranges::any_of(parts_of_line(course_deg, offset_m), [&](const LinePart& part) {
-        return std::min(part.to_m, end_m) - std::max(part.from_m, start_m) > tolerance_m;
+    const auto start = along_and_across(from, course_deg);
+    const double end_m = start.along_m + distance_between_m(from, to);
+    return std::ranges::any_of(parts_of_line(course_deg, start.across_m), [&](const LinePart& part) {
+        return std::min(part.to_m, end_m) - std::max(part.from_m, start.along_m) > tolerance_m;
     });
 }
 

@@ -48,10 +48,10 @@ Fence read_fence(const Json& fence, const GeodeticPosition& origin) {
 bool is_within(const Polygon& polygon, const LocalPosition& from, const LocalPosition& to) {
     constexpr double tolerance_m = 0.1;
     const double course_deg = course_between(from, to);
-    const auto [start_m, offset_m] = along_and_across(from, course_deg);
-    const double end_m = start_m + distance_between_m(from, to);
-    return std::ranges::any_of(parts_within(polygon, course_deg, offset_m), [&](const LinePart& part) {
-        return part.from_m <= start_m + tolerance_m && end_m - tolerance_m <= part.to_m;
+    const auto start = along_and_across(from, course_deg);
+    const double end_m = start.along_m + distance_between_m(from, to);
+    return std::ranges::any_of(parts_within(polygon, course_deg, start.across_m), [&](const LinePart& part) {
+        return part.from_m <= start.along_m + tolerance_m && end_m - tolerance_m <= part.to_m;
     });
 }
 

@@ -151,7 +151,7 @@ void RowCollector::add(const LoggedMessage& message, std::optional<double> time_
         pending_ = std::move(row);
         return;
     }
-    set_time(std::move(row));
+    set_time(row);
 }
 
 void RowCollector::skip(std::size_t offset, std::size_t count) {
