@@ -110,7 +110,7 @@ TEST(FlightBins, OfARotorcraftHaveItsTerms) {
     series.firmware = "rotorcraft";
     series.tracks[2].name = "ground_speed_m_per_s";
     for (const auto& [name, value] : {std::pair{"payload_kg", 0.5}, {"mass_kg", 3.0}, {"rotor_area_m2", 0.4}})
-        series.tracks.push_back(track(name, 1.0, [value](double) { return value; }));
+        series.tracks.push_back(track(name, 1.0, [constant = value](double) { return constant; }));
     const auto found = motion(series);
     EXPECT_TRUE(found.is_rotorcraft);
     EXPECT_TRUE(found.payload_known);
