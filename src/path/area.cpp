@@ -164,7 +164,9 @@ SurveyPlan parse_area(std::string_view text, const std::string& file, const Surv
     SurveyPlan survey;
     survey.starts_at_first_place = true;
     const PatternWriter writer{like, survey.entries};
-    if (is_divided(area, layout.strips.front().spacing_m, layout.heading_deg, like.where))
+    const auto finest = std::ranges::min(layout.strips, {}, &SurveyStrip::spacing_m);
+    survey.is_divided = is_divided(area, finest.spacing_m, layout.heading_deg, like.where);
+    if (survey.is_divided)
         write_cells(writer, area, layout, survey);
     else
         write_strips(writer, area.areas.front(), layout, survey);

@@ -36,6 +36,7 @@ struct StripCover {
 struct SurveyPlan : PlanEntries {
     std::vector<double> line_to;     ///< part of the width up to which each line covers, in the order of flight
     std::vector<StripCover> strips;  ///< those of the layout
+    bool is_divided = false;         ///< by notches, holes or zones, or into several polygons: lines of one spacing
 };
 
 /// Plans lines over the polygons of a GeoJSON or KML file, on the course of the layout and back, with half circles between

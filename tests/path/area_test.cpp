@@ -100,6 +100,8 @@ TEST(Areas, ThatAreDividedHaveOneSpacing) {
     constexpr auto hole = "[[8.0015,47.001],[8.0035,47.001],[8.0035,47.0025],[8.0015,47.0025],[8.0015,47.001]]";
     const auto text = geojson(fmt::format("{},{}", ring, hole));
     const auto area = parse_area(text, "a", {0.0, {{20.0}}});
+    EXPECT_TRUE(area.is_divided);
+    EXPECT_FALSE(parse_area(geojson(ring), "a", {0.0, {{20.0}}}).is_divided);
     EXPECT_EQ(area.line_to.back(), 1.0);
     EXPECT_NEAR(area.strips.front().area_m2, 400.0 * 400.0 - 152.0 * 167.0, 800.0);
     EXPECT_NE(rejected([&] {

@@ -293,6 +293,10 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
         const auto layout = mission.survey->layout;
         auto survey = path::parse_area(read_file(file), file.string(), layout);
         mission.survey = read_coverage(path, layout, survey);
+        if (survey.is_divided && is_chosen(path))
+            mission.notes.emplace_back(
+                "path: its lines are not chosen again in flight: notches, holes, zones or several "
+                "polygons divide the area");
         return survey;
     }
     if (!path.has("flight_plan")) return {};
