@@ -45,6 +45,7 @@ std::span<const TrackMember> track_members() {
         {"armed", &D::armed},
         {"landed", &D::landed},
         {"fix", &D::fix},
+        {"vtol_state", &D::vtol_state},
         {"ground_altitude_m", &D::ground_altitude_m},
         {"payload_kg", &D::payload_kg},
     });

@@ -85,7 +85,8 @@ struct FlightData : FlightInfo {
     ChosenTrack takeoff;
     ChosenTrack armed;
     ChosenTrack landed;
-    ChosenTrack fix;  ///< 1: the position has a 3D fix
+    ChosenTrack fix;         ///< 1: the position has a 3D fix
+    ChosenTrack vtol_state;  ///< see VtolState
     ChosenTrack ground_altitude_m;
     ChosenTrack payload_kg;
 

@@ -139,6 +139,7 @@ const std::vector<std::string>& track_names() {
                                                 "armed",
                                                 "landed",
                                                 "fix",
+                                                "vtol_state",
                                                 "ground_altitude_m",
                                                 "payload_kg"};
     return names;

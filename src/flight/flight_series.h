@@ -72,6 +72,9 @@ double median_interval_s(const std::vector<double>& time_s);
 /// Returns whether all values are equal; true for an empty track.
 bool is_constant(const Track& track);
 
+/// What carries a VTOL aircraft, by the numbers of MAVLink's MAV_VTOL_STATE: the track "vtol_state".
+enum class VtolState { transition_to_wing = 1, transition_to_hover = 2, hover = 3, wing = 4 };
+
 using telemetry::CurrentOrigin;
 
 /// A restart of the log's clock: another recording follows, or overlaps the first.

@@ -5,6 +5,7 @@
 #include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_check.h"
+#include "flight/segment/vtol_flight.h"
 #include "flight/select.h"
 
 #include <algorithm>
@@ -81,6 +82,9 @@ Diagnostics all_diagnostics(const FlightData& data, const FlightPhases& phases, 
         finding.flight = flight;
         found.push_back(std::move(finding));
     }
+    for (const auto& sortie : phases.sorties)
+        if (auto text = describe_vtol(data, sortie); !text.empty())
+            found.push_back({Severity::note, "flown as a VTOL", std::move(text), flight});
     const PowerStatistics power(data);
     for (const auto& sortie : phases.sorties)
         if (const double lost_s = power.between(sortie.start_s(), sortie.end_s()).lost_s; lost_s > 0.0)

@@ -5,6 +5,7 @@
 #include "flight/segment/flight_rejection.h"
 #include "flight/segment/hover_record.h"
 #include "flight/segment/phase_edges.h"
+#include "flight/segment/vtol_flight.h"
 #include "flight/select.h"
 
 #include <algorithm>
@@ -50,6 +51,7 @@ Sortie make_sortie(const FlightCandidate& flown) {
     if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(flown.activity.span.begin));
     const double last_s = edges.touchdown_s.value_or(grid.time_s(flown.activity.span.end - 1));
+    include_transitions(flown.data, edges, {first_s, last_s});
     const double cruise_from = edges.takeoff_end_s.value_or(first_s);
     const double cruise_to = std::max(edges.landing_start_s.value_or(last_s), cruise_from);
     Sortie sortie;
@@ -147,6 +149,8 @@ FlightPhases segment(const FlightData& data, const SegmentationOptions& options)
         phases.sorties.push_back(std::move(sortie));
         phases.sorties.back().number = phases.sorties.size();
         warn_of_gaps(phases.sorties.back(), phases.warnings);
+        if (auto warning = hover_in_cruise(data, phases.sorties.back()); !warning.empty())
+            phases.warnings.push_back(std::move(warning));
     }
     return phases;
 }

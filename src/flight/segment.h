@@ -12,7 +12,8 @@ void validate(const SegmentationOptions& options);
 
 /// Finds all sorties and their phases by altitude and throttle. A sortie is between two rests; lift-off is where the
 /// aircraft last leaves the ground on its way up, touchdown where it first is back for good; take-off ends where the
-/// held height is reached, landing begins where it is left. TAKEOFF, mode and block are recorded, but not used. Throws
+/// held height is reached, landing begins where it is left; of a VTOL the take-off lasts until it flies on its wing, and
+/// the landing begins where it last does. TAKEOFF, mode and block are recorded, but not used. Throws
 /// InputError if the series has no altitude.
 FlightPhases segment(const FlightData& data, const SegmentationOptions& options = {});
 

@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
+#include "flight/segment/vtol_flight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,7 +148,8 @@ BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight
             const double start_s = span.start_s + static_cast<double>(i) * width_s;
             const double end_s = start_s + width_s;
             if (!is_measured(of.power, start_s, end_s) || !is_measured(of.airspeed, start_s, end_s) ||
-                !is_measured(of.altitude, start_s, end_s) || !(motion.is_rotorcraft || of.min_m_per_s > 0.0))
+                !is_measured(of.altitude, start_s, end_s) || !is_on_wing(data, start_s, end_s) ||
+                !(motion.is_rotorcraft || of.min_m_per_s > 0.0))
                 continue;
             motion.bins.push_back(motion_bin(of, {span.phase, start_s, end_s}));
         }

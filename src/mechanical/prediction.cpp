@@ -10,7 +10,7 @@
 #include <limits>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 
 namespace flightwatt::mechanical {
 namespace {
@@ -56,14 +56,22 @@ struct Update {
     PhaseMatrix by_correlations;  ///< with one standard error of the correlations
 };
 
+/// The inverse of a covariance; 0 along directions without any: without variance between and within flights the model
+/// holds, whatever is measured.
+PhaseMatrix pseudo_inverse(const PhaseMatrix& covariance) {
+    const Eigen::SelfAdjointEigenSolver<PhaseMatrix> parts(covariance);
+    const double least = 3.0 * std::numeric_limits<double>::epsilon() * parts.eigenvalues().cwiseAbs().maxCoeff();
+    const PhaseVector inverse = (parts.eigenvalues().array() > least).select(parts.eigenvalues().cwiseInverse(), 0.0);
+    return parts.eigenvectors() * inverse.asDiagonal() * parts.eigenvectors().transpose();
+}
+
 Update update_of(const PhaseVariances& of) {
     const auto seen = of.was_flown.asDiagonal();
     const PhaseMatrix level_w2 = seen * of.level_w2 * seen;
     const PhaseMatrix ahead_w2 = of.level_w2 * seen;
     Update update;
     update.seen_w2 = level_w2 + PhaseMatrix(of.flown_w2.asDiagonal());
-    // Without any variance between and within flights the model holds, whatever is measured.
-    const PhaseMatrix inverse = update.seen_w2.completeOrthogonalDecomposition().pseudoInverse();
+    const PhaseMatrix inverse = pseudo_inverse(update.seen_w2);
     update.gains = (ahead_w2 + PhaseMatrix(of.both_w2.asDiagonal())) * inverse;
     update.by_variances = (ahead_w2 - update.gains * level_w2) * inverse;
     update.by_correlations = (of.level_change_w2 * seen - update.gains * seen * of.level_change_w2 * seen) * inverse;

@@ -85,7 +85,7 @@ Json object_schema(const std::vector<const FieldText*>& fields) {
     auto properties = Json::object();
     auto required = Json::array();
     for (const auto* field : fields) {
-        auto property = field->schema();
+        auto property = field->is_nullable ? nullable(field->schema()) : field->schema();
         property["description"] = field->description;
         if (const auto* unit = unit_of_key(field->key)) property["unit"] = unit->unit;
         if (field->csv_column) property["csv"] = names_of(*field, *field->csv_column, "_");

@@ -22,7 +22,8 @@ namespace flightwatt {
 struct FieldText {
     std::string key;  ///< with its unit: "energy_wh"
     std::string description;
-    std::function<Json()> schema = {};
+    Json (*schema)() = nullptr;
+    bool is_nullable = false;  ///< null where the record that has it is absent
     bool is_interval = false;
     bool in_json = true;
     bool is_optional = false;                      ///< without a value the key is absent instead of null
@@ -92,7 +93,7 @@ Field<R> make_field(const std::string& key, const std::string& description, std:
     Field<R> made;
     made.key = key;
     made.description = description;
-    made.schema = [] { return JsonType<T>::schema(); };
+    made.schema = &JsonType<T>::schema;
     made.is_interval = std::is_same_v<T, Interval> || std::is_same_v<T, std::optional<Interval>>;
     made.get = std::move(get);
     (changes(made), ...);
@@ -177,7 +178,7 @@ auto embedded(F get, std::initializer_list<std::string_view> without = {}) {
 template <typename F>
 auto embedded_or_null(F get) {
     auto fields = embedded(get);
-    for (auto& field : fields) field.schema = [inner = field.schema] { return nullable(inner()); };
+    for (auto& field : fields) field.is_nullable = true;
     return fields;
 }
 

@@ -4,6 +4,7 @@
 #include "batch/flight_record.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "flight/segment/vtol_flight.h"
 
 #include <algorithm>
 #include <utility>
@@ -66,10 +67,28 @@ Fields<PhaseSpanOutput> record_fields(const PhaseSpanOutput*) {
                           field("complete", at(&R::span, &P::complete), "false: the log begins or ends in the phase"));
 }
 
+/// An interval of one kind of flight of a VTOL.
+struct VtolSpanOutput {
+    flight::VtolSpan span;
+    std::optional<flight::PhaseStatistics> statistics;
+};
+
+Fields<VtolSpanOutput> record_fields(const VtolSpanOutput*) {
+    using R = VtolSpanOutput;
+    using S = flight::VtolSpan;
+    return list_fields<R>(field(
+                              "flight", [](const R& r) { return std::string(to_string(r.span.flight)); },
+                              "`hover`, `transition` or `wing`; of ArduPilot `hover` includes transitions"),
+                          field("start_s", at(&R::span, &S::start_s), "in the log's time"),
+                          field("end_s", at(&R::span, &S::end_s), "in the log's time"),
+                          embedded_or_null([](const R& r) { return r.statistics ? &*r.statistics : nullptr; }));
+}
+
 /// A sortie with its phases.
 struct SortieOutput {
     flight::Sortie sortie;
     std::vector<PhaseSpanOutput> phases;
+    std::optional<std::vector<VtolSpanOutput>> vtol;
 };
 
 Fields<SortieOutput> record_fields(const SortieOutput*) {
@@ -77,18 +96,22 @@ Fields<SortieOutput> record_fields(const SortieOutput*) {
     using S = flight::Sortie;
     return {field("ground_altitude_m", at(&R::sortie, &S::ground_altitude_m), "altitude of the ground"),
             field("height_m", at(&R::sortie, &S::height_m), "height of the cruise above the ground"),
-            field("phases", &R::phases, "phases")};
+            field("phases", &R::phases, "phases"), field("vtol", &R::vtol, "of a VTOL: how it flew", optional_key())};
 }
 
 std::vector<SortieOutput> sortie_outputs(const SegmentedFlight& flight) {
     const flight::PowerStatistics power(*flight.data);
     std::vector<SortieOutput> all;
+    const auto statistics = [&](double start_s, double end_s) {
+        return power.has_power() ? std::optional(power.between(start_s, end_s)) : std::nullopt;
+    };
     for (const auto& sortie : flight.phases->sorties) {
-        auto& output = all.emplace_back(SortieOutput{sortie, {}});
+        auto& output = all.emplace_back(SortieOutput{sortie, {}, {}});
         for (const auto& span : sortie.phases)
-            output.phases.push_back({span, power.has_power()
-                                               ? std::optional(power.between(span.start.time_s, span.end.time_s))
-                                               : std::nullopt});
+            output.phases.push_back({span, statistics(span.start.time_s, span.end.time_s)});
+        if (!flight.data->vtol_state.empty()) output.vtol.emplace();
+        for (const auto& span : vtol_spans(*flight.data, sortie.start_s(), sortie.end_s()))
+            output.vtol->push_back({span, statistics(span.start_s, span.end_s)});
     }
     return all;
 }

@@ -121,6 +121,7 @@ std::vector<FamilyTrack> ardupilot_tracks() {
                       {"landed", "EV", {{"Id"}}, latest, switched<18, 28>},
                       {"landed", "STAT", {{"isFlying"}}, latest, [](const auto& flying) { return 1.0 - flying[0]; }},
                       {"fix", "GPS", {{"Status"}}, latest},
+                      {"vtol_state", "QTUN", {{"ThO"}}, latest, lift_motors_run},
                   });
     return tracks;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -101,6 +102,28 @@ void add_fix(const FamilyTrack& of, const MessageTable& table, const Instances& 
     tracks.push_back(make_candidate(of.track, source_name(of, ""), table, values, of.merge));
 }
 
+/// Adds wing flight where the message that is sent while lift motors run is absent for a second before the log ends.
+void add_wing_flight(double log_end_s, Track& lifted) {
+    constexpr double sent_s = 1.0;
+    const auto times_s = std::exchange(lifted.time_s, {});
+    lifted.value.clear();
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+        lifted.time_s.push_back(times_s[i]);
+        lifted.value.push_back(static_cast<double>(VtolState::hover));
+        const double rests_s = times_s[i] + sent_s;
+        if (rests_s >= (i + 1 < times_s.size() ? times_s[i + 1] : log_end_s)) continue;
+        lifted.time_s.push_back(rests_s);
+        lifted.value.push_back(static_cast<double>(VtolState::wing));
+    }
+}
+
+double last_time_s(const telemetry::SenderLog& sender) {
+    double last_s = -std::numeric_limits<double>::infinity();
+    for (const auto& table : sender.tables)
+        for (const double time_s : table.time_s) last_s = std::max(last_s, time_s);
+    return last_s;
+}
+
 /// Adds the track of each instance.
 void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instances& instances,
                 const std::vector<BoundSource>& sources, std::vector<Track>& tracks) {
@@ -117,7 +140,7 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
         }
         const auto instance = instances.numbered ? fmt::format("{}", number) : "";
         auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
-        if (of.compute == if_stated_temperature) {
+        if (of.compute == if_stated_temperature || of.compute == if_vtol_state) {
             if (track.empty()) continue;
             track.since_s = track.time_s.front();
         }
@@ -158,6 +181,7 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
             add_fix(of, *table, instances_of(*table, family), sources.front().column->values, tracks);
         else if (!sources.empty())
             add_tracks(of, *table, instances_of(*table, family), sources, tracks);
+        if (of.compute == lift_motors_run && !sources.empty()) add_wing_flight(last_time_s(sender), tracks.back());
         for (const auto& source : sources)
             if (std::string_view(of.track) == "power_w" && !source.unit.empty())
                 assumed.insert(fmt::format("{}.{} is read in {}", of.message, source.column->field, source.unit));
@@ -176,6 +200,10 @@ double correct_week_rollover(double utc_s) {
 double if_stated_temperature(const std::vector<double>& row) {
     return row[0] == 0.0 || row[0] == -1.0 ? no_value : row[0];
 }
+
+double if_vtol_state(const std::vector<double>& row) { return row[0] > 0.0 ? row[0] : no_value; }
+
+double lift_motors_run(const std::vector<double>& /*row*/) { return static_cast<double>(VtolState::hover); }
 
 double product(const std::vector<double>& values) { return values[0] * values[1]; }
 

@@ -64,6 +64,12 @@ double product(const std::vector<double>& values);
 /// Returns a battery's temperature [degC]; NaN for exactly 0 or -1, with which autopilots state that nothing measures it.
 double if_stated_temperature(const std::vector<double>& row);
 
+/// Returns a VTOL's state; NaN for 0, with which autopilots of other aircraft state that they have none.
+double if_vtol_state(const std::vector<double>& row);
+
+/// Returns that the lift motors of a VTOL run, as ArduPilot logs QTUN only then.
+double lift_motors_run(const std::vector<double>& row);
+
 /// Returns the kind of vehicle by MAVLink's number of its type, as FlightInfo::firmware; empty for others, as VTOLs.
 std::string firmware_of_type(double mav_type);
 

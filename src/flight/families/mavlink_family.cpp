@@ -111,6 +111,7 @@ std::vector<FamilyTrack> mavlink_tracks() {
         {"throttle_percent", "VFR_HUD", {{"throttle", "%"}}},
         {"mode", "HEARTBEAT", {{"custom_mode"}}, latest},
         {"armed", "HEARTBEAT", {{"base_mode"}}, latest, is_armed_mode},
+        {"vtol_state", "EXTENDED_SYS_STATE", {{"vtol_state"}}, latest, if_vtol_state},
         {"landed", "EXTENDED_SYS_STATE", {{"landed_state"}}, latest, is_landed},
         {"fix", "GPS_RAW_INT", {{"fix_type"}}, latest},
         {utc_track, "SYSTEM_TIME", {{"time_unix_usec", "1e-6s"}}, latest, if_known_time},

@@ -46,6 +46,15 @@ double is_armed(const std::vector<double>& state) {
     return state[0] == armed_state ? 1.0 : 0.0;
 }
 
+/// Until 1.12: whether it flies as a rotorcraft, is in a transition, and in one to its wing.
+double vtol_state_of(const std::vector<double>& flags) {
+    const auto state = flags[1] != 0.0
+                           ? flags[2] != 0.0 ? VtolState::transition_to_wing : VtolState::transition_to_hover
+                       : flags[0] != 0.0 ? VtolState::hover
+                                         : VtolState::wing;
+    return static_cast<double>(state);
+}
+
 const std::vector<FamilyTrack>& px4_tracks() {
     constexpr auto mean = Merge::mean;
     constexpr auto latest = Merge::latest;
@@ -85,6 +94,12 @@ const std::vector<FamilyTrack>& px4_tracks() {
         {"mode", "vehicle_status", {{"nav_state"}}, latest},
         {"landed", "vehicle_land_detected", {{"landed"}}, latest},
         {"fix", "vehicle_gps_position", {{"fix_type"}}, latest},
+        {"vtol_state", "vtol_vehicle_status", {{"vehicle_vtol_state"}}, latest, if_vtol_state},
+        {"vtol_state",
+         "vtol_vehicle_status",
+         {{"vtol_in_rw_mode"}, {"vtol_in_trans_mode"}, {"in_transition_to_fw"}},
+         latest,
+         vtol_state_of},
         {"ground_speed_m_per_s", "vehicle_local_position", velocity, mean, speed_of},
         {"course_deg", "vehicle_local_position", velocity, latest, course_of},
         {"heading_deg", "vehicle_attitude", quaternion, latest, heading_of},
@@ -147,6 +162,8 @@ std::string vehicle_kind(const telemetry::AutopilotLog& log) {
     if (const auto type = parameters.find("MAV_TYPE"); type != parameters.end()) return firmware_of_type(type->second);
     const auto* status = log.log.senders.front().table("vehicle_status");
     if (status == nullptr) return "";
+    const auto* vtol = status->column("is_vtol");
+    if (vtol != nullptr && vtol->values.front() != 0.0) return "";
     if (const auto* kind = status->column("vehicle_type")) {
         constexpr std::array names{"", "rotorcraft", "fixedwing", "rover"};
         const double number = kind->values.front();
@@ -203,16 +220,16 @@ const LogFamily& sdlog2_family() {
 }
 
 const LogFamily& px4_family() {
-    static const LogFamily family{
-        px4_tracks(),
-        {{"battery_status", "multi_id"},
-         {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
-         {"vehicle_air_data", "multi_id"},
-         {"airspeed", "multi_id"},
-         {"wind_estimate", "multi_id"},
-         {"vehicle_local_position", "multi_id"}},
-        describe_px4,
-        {{"vehicle_status", {"vehicle_type", "is_rotary_wing"}}, {"battery_status", {"serial_number", "cycle_count"}}}};
+    static const LogFamily family{px4_tracks(),
+                                  {{"battery_status", "multi_id"},
+                                   {"vehicle_gps_position", "multi_id", "fix_type", min_fix},
+                                   {"vehicle_air_data", "multi_id"},
+                                   {"airspeed", "multi_id"},
+                                   {"wind_estimate", "multi_id"},
+                                   {"vehicle_local_position", "multi_id"}},
+                                  describe_px4,
+                                  {{"vehicle_status", {"vehicle_type", "is_rotary_wing", "is_vtol"}},
+                                   {"battery_status", {"serial_number", "cycle_count"}}}};
     return family;
 }
 

@@ -12,7 +12,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
@@ -212,7 +211,8 @@ WindFit fit_wind(std::span<const GroundVelocity> all) {
         return fit;
     }
     fit.covariance = wind_covariance(velocities, fit.circle, scale, intervals);
-    const double sd = std::sqrt(fit.covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
+    const double difference = fit.covariance(0, 0) - fit.covariance(1, 1);
+    const double sd = std::sqrt(0.5 * (fit.covariance.trace() + std::hypot(difference, 2.0 * fit.covariance(0, 1))));
     if (!(sd <= max_sd_part * fit.circle[2]))
         fit.unknown = fmt::format("the wind is only known within {:.1f} m/s (1 sd) by its headings", sd);
     return fit;

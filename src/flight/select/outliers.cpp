@@ -31,6 +31,7 @@ const std::map<std::string_view, PhysicalBounds> bounds_by_name{{"altitude_m", {
                                                                 {"climb_m_per_s", {-300.0, 300.0}},
                                                                 {"air_temperature_c", {-80.0, 100.0}},
                                                                 {"battery_temperature_c", {-80.0, 200.0}},
+                                                                {"vtol_state", {1.0, 4.0}},
                                                                 {"payload_kg", {0.0, 1e3}}};
 
 bool is_within(const PhysicalBounds& bounds, double value) { return value >= bounds.low && value <= bounds.high; }

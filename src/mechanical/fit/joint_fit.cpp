@@ -45,7 +45,7 @@ class ProjectedResiduals : public ceres::CostFunction {
 
     bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
         const auto basis = fourier_basis(samples_.tau, order_, *parameters[0]);
-        const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
+        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
         const auto outside_basis = [&](Eigen::VectorXd values) {
             values.applyOnTheLeft(qr.householderQ().adjoint());
             values.head(basis.cols()).setZero();

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace flightwatt::mechanical {
@@ -63,8 +62,8 @@ bool is_determined(const std::vector<NormalEquations>& flights) {
     if (!(sum.diagonal().minCoeff() > 0.0)) return false;
     const ColumnVector root = sum.diagonal().cwiseSqrt().cwiseInverse();
     const ColumnMatrix scaled = root.asDiagonal() * sum * root.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<ColumnMatrix> solver(scaled, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues().minCoeff() > min_eigenvalue;
+    const ColumnMatrix least = min_eigenvalue * ColumnMatrix::Identity(sum.rows(), sum.cols());
+    return Eigen::LDLT<ColumnMatrix>(scaled - least).isPositive();  // without the eigenvalues, which compile for long
 }
 
 /// Normal distribution of the coefficients' errors and, last, the flight's level.

@@ -86,6 +86,9 @@ class ItemReader {
                 return fly_level_to(item);
             case change_speed:
                 return set_speed(item);
+            case vtol_transition:
+                if (parameters[0] == 3.0) report(item, "what follows the transition to hover is flown as on the wing");
+                return;
             case jump:
                 return report(item, fmt::format("the jump to item {:.0f} is not flown", parameters[0]));
             default:

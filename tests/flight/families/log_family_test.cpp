@@ -64,6 +64,49 @@ TEST(LogFamily, ReadsCapacitiesOfPacksFromParametersInMilliampereHours) {
     EXPECT_EQ(monitor_capacities_ah(px4, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY"), (Capacities{{"0", 4.0}}));
 }
 
+TEST(LogFamily, ReadsThatAQuadplaneIsOnItsWingWhileItLogsNoLiftMotors) {
+    auto log = test::dataflash_log(300, "ArduPlane V4.3.1 (2cb4b85a)") +
+               test::dataflash_format(4, "QTUN", "Qf", "TimeUS,ThO", 12);
+    const auto add_lift = [&](double from_s, double to_s) {
+        for (double time_s = from_s; time_s <= to_s; time_s += 0.25)
+            log += test::dataflash_message(
+                4, test::little_endian(static_cast<std::uint64_t>(time_s * 1e6)) + test::little_endian(0.4F));
+    };
+    add_lift(12.0, 15.0);
+    add_lift(30.0, 38.75);
+    const auto series = series_of(log);
+    EXPECT_EQ(series.firmware, "fixedwing");
+    const auto state = select_track(series, "vtol_state");
+    EXPECT_EQ(state.source, "QTUN.ThO");
+    const auto at = [&](double time_s) { return state_at(state, time_s); };
+    EXPECT_EQ((std::vector{at(14.0), at(15.9), at(16.0), at(29.9), at(30.0), at(38.0)}),
+              (std::vector{3.0, 3.0, 4.0, 4.0, 3.0, 3.0}));
+    EXPECT_EQ(state.time_s.back(), 39.75) << "the log goes on to 39.9 s without them";
+}
+
+std::string ulog_of_vtol(const std::string& fields, const std::vector<std::string>& states) {
+    auto log = test::ulog_header() + test::ulog_definitions() +
+               test::ulog_message('F', "vtol_vehicle_status:uint64_t timestamp;" + fields) +
+               test::ulog_subscription(0, 9, "vtol_vehicle_status");
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const double time_s = 10.0 + static_cast<double>(i);
+        log += test::ulog_battery(7, time_s, 22.0F, 10.0F) +
+               test::ulog_message('D', test::little_endian(std::uint16_t{9}) +
+                                           test::little_endian(static_cast<std::uint64_t>(time_s * 1e6)) + states[i]);
+    }
+    return log;
+}
+
+TEST(LogFamily, ReadsTheStateOfPx4VtolsOfAllVersions) {
+    const std::string no(1, '\0');
+    const std::string yes(1, '\1');
+    const auto flags = ulog_of_vtol("bool vtol_in_rw_mode;bool vtol_in_trans_mode;bool in_transition_to_fw;",
+                                    {yes + no + no, yes + yes + yes, no + no + no, yes + yes + no});
+    EXPECT_EQ(select_track(series_of(flags, "x.ulg"), "vtol_state").value, (std::vector{3.0, 1.0, 4.0, 2.0}));
+    const auto numbers = ulog_of_vtol("uint8_t vehicle_vtol_state;", {no, "\3", "\1", "\4"});
+    EXPECT_EQ(select_track(series_of(numbers, "x.ulg"), "vtol_state").value, (std::vector{3.0, 1.0, 4.0}));
+}
+
 TEST(LogFamily, SeriesFileLosesNothing) {
     for (const auto& bytes : {test::dataflash_log(50), test::ulog_log(50)}) {
         auto series = series_of(bytes);

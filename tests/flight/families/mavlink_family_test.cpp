@@ -50,6 +50,19 @@ TEST(MavlinkFamily, HasThePhasesAndEnergyOfAFlight) {
     EXPECT_NEAR(flight.series.start_clock_s.value(), 1.78e9, 1e-3);
 }
 
+TEST(MavlinkFamily, ReadsTheStateOfAVtolAndNoneOfOtherAircraft) {
+    test::MavlinkSender vehicle;
+    const auto state_of = [&](int i, char vtol_state) {
+        return std::vector{vehicle.battery({4'000}, 1'000, 10 * i), vehicle.packet(245, {vtol_state, '\2'})};
+    };
+    const auto vtol = series_of(vehicle, [&](int i) { return state_of(i, i < 60 ? '\3' : '\4'); });
+    const auto state = select_tracks(vtol).vtol_state;
+    EXPECT_EQ(state_at(state, 30.0), 3.0);
+    EXPECT_EQ(state_at(state, 90.0), 4.0);
+    const auto copter = series_of(vehicle, [&](int i) { return state_of(i, '\0'); });
+    EXPECT_THAT(sources_of(copter, "vtol_state"), testing::IsEmpty());
+}
+
 TEST(MavlinkFamily, AddsTheVoltagesOfCellsThatAreKnown) {
     test::MavlinkSender vehicle;
     const auto series = series_of(vehicle, [&](int i) {

@@ -43,6 +43,15 @@ TEST(MissionFiles, FlyWaypointsInEitherFrame) {
     EXPECT_TRUE(plan.not_flown.empty());
 }
 
+TEST(MissionFiles, OfAVtolStateThatHoverAfterATransitionIsNotFlown) {
+    const auto plan = parse_qgc_plan(
+        qgc(item(84, 3, "0, 0, 0, null, 47.0, 8.0, 30") + "," + item(3000, 2, "4, 0, 0, 0, 0, 0, 0") + "," +
+            item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60") + "," + item(3000, 2, "3, 0, 0, 0, 0, 0, 0")),
+        "q.plan", {});
+    EXPECT_EQ(plan.not_flown,
+              std::vector<std::string>{"item 4: what follows the transition to hover is flown as on the wing"});
+}
+
 TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
     const auto plan = parse_qgc_plan(
         qgc(item(178, 2, "0, 14, -1, 0, 0, 0, 0") + "," + item(18, 3, "3, 0, -70, 1, 47.001, 8.0, 60") + "," +

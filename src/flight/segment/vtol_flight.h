@@ -1,0 +1,42 @@
+#pragma once
+
+#include "flight/flight_data.h"
+#include "flight/flight_phases.h"
+#include "flight/segment/phase_edges.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Hover, transitions and wing flight of VTOL aircraft, as their autopilots state them.
+namespace flightwatt::flight {
+
+/// How a VTOL flies. Of ArduPilot's logs, which state only that the lift motors run, hover includes transitions.
+enum class VtolFlight { hover, transition, wing };
+
+/// Returns its name: "hover", "transition" or "wing".
+std::string_view to_string(VtolFlight flight);
+
+/// An interval of one kind of flight.
+struct VtolSpan : TimeInterval {
+    VtolFlight flight = VtolFlight::hover;
+};
+
+/// Returns how a VTOL flies between two times, in order; empty for other aircraft.
+std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double end_s);
+
+/// Returns whether an aircraft is on its wing throughout an interval; true for one that is no VTOL.
+bool is_on_wing(const FlightData& data, double start_s, double end_s);
+
+/// Lets the take-off of a VTOL last at least until it first flies on its wing, and its landing begin at the latest where
+/// it last does, between lift-off and touchdown: what hover and transitions draw says nothing about the cruise.
+void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown);
+
+/// Returns a warning of hover or transitions within the cruise of a VTOL that flies on its wing there; empty without.
+std::string hover_in_cruise(const FlightData& data, const Sortie& sortie);
+
+/// Returns the duration, energy and mean power of each kind of flight of a VTOL's sortie: "hover 35 s, 5.95 Wh, 612 W;
+/// ..."; empty for other aircraft.
+std::string describe_vtol(const FlightData& data, const Sortie& sortie);
+
+}  // namespace flightwatt::flight
