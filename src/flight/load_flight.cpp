@@ -5,8 +5,8 @@
 #include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
 #include "flight/power_check.h"
-#include "flight/segment/vtol_flight.h"
 #include "flight/select.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <new>

@@ -5,8 +5,8 @@
 #include "flight/segment/flight_rejection.h"
 #include "flight/segment/hover_record.h"
 #include "flight/segment/phase_edges.h"
-#include "flight/segment/vtol_flight.h"
 #include "flight/select.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +41,18 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
         if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;
     }
     return edge;
+}
+
+/// Lets the take-off of a VTOL last at least until it first flies on its wing, and its landing begin at the latest where
+/// it last does, between lift-off and touchdown: hover and transitions are no part of the cruise.
+void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown) {
+    const auto spans = vtol_spans(data, flown.start_s, flown.end_s);
+    const auto is_wing = [](const VtolSpan& span) { return span.flight == VtolFlight::wing; };
+    const auto first = std::ranges::find_if(spans, is_wing);
+    if (first == spans.end()) return;
+    const auto last = std::find_if(spans.rbegin(), spans.rend(), is_wing);
+    if (edges.takeoff_end_s) edges.takeoff_end_s = std::max(*edges.takeoff_end_s, first->start_s);
+    if (edges.landing_start_s) edges.landing_start_s = std::min(*edges.landing_start_s, last->end_s);
 }
 
 Sortie make_sortie(const FlightCandidate& flown) {

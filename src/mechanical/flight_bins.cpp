@@ -3,7 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/phase_statistics.h"
-#include "flight/segment/vtol_flight.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <cmath>

@@ -22,7 +22,7 @@ namespace flightwatt {
 struct FieldText {
     std::string key;  ///< with its unit: "energy_wh"
     std::string description;
-    Json (*schema)() = nullptr;
+    std::function<Json()> schema = {};
     bool is_nullable = false;  ///< null where the record that has it is absent
     bool is_interval = false;
     bool in_json = true;

@@ -4,7 +4,7 @@
 #include "batch/flight_record.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
-#include "flight/segment/vtol_flight.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <utility>

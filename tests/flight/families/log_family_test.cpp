@@ -81,7 +81,7 @@ TEST(LogFamily, ReadsThatAQuadplaneIsOnItsWingWhileItLogsNoLiftMotors) {
     const auto at = [&](double time_s) { return state_at(state, time_s); };
     EXPECT_EQ((std::vector{at(14.0), at(15.9), at(16.0), at(29.9), at(30.0), at(38.0)}),
               (std::vector{3.0, 3.0, 4.0, 4.0, 3.0, 3.0}));
-    EXPECT_EQ(state.time_s.back(), 39.75) << "the log goes on to 39.9 s without them";
+    EXPECT_EQ(state.time_s.back(), 39.75) << "the log ends at 39.9 s without them";
 }
 
 std::string ulog_of_vtol(const std::string& fields, const std::vector<std::string>& states) {

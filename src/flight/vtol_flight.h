@@ -2,7 +2,6 @@
 
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
-#include "flight/segment/phase_edges.h"
 
 #include <string>
 #include <string_view>
@@ -27,10 +26,6 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
 
 /// Returns whether an aircraft is on its wing throughout an interval; true for one that is no VTOL.
 bool is_on_wing(const FlightData& data, double start_s, double end_s);
-
-/// Lets the take-off of a VTOL last at least until it first flies on its wing, and its landing begin at the latest where
-/// it last does, between lift-off and touchdown: what hover and transitions draw says nothing about the cruise.
-void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown);
 
 /// Returns a warning of hover or transitions within the cruise of a VTOL that flies on its wing there; empty without.
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie);

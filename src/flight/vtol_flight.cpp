@@ -1,4 +1,4 @@
-#include "flight/segment/vtol_flight.h"
+#include "flight/vtol_flight.h"
 
 #include "base/units.h"
 #include "flight/phase_statistics.h"
@@ -43,15 +43,6 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
 
 bool is_on_wing(const FlightData& data, double start_s, double end_s) {
     return std::ranges::all_of(vtol_spans(data, start_s, end_s), is_wing);
-}
-
-void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown) {
-    const auto spans = vtol_spans(data, flown.start_s, flown.end_s);
-    const auto first = std::ranges::find_if(spans, is_wing);
-    if (first == spans.end()) return;
-    const auto last = std::find_if(spans.rbegin(), spans.rend(), is_wing);
-    if (edges.takeoff_end_s) edges.takeoff_end_s = std::max(*edges.takeoff_end_s, first->start_s);
-    if (edges.landing_start_s) edges.landing_start_s = std::min(*edges.landing_start_s, last->end_s);
 }
 
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {

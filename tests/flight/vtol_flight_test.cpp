@@ -1,4 +1,4 @@
-#include "flight/segment/vtol_flight.h"
+#include "flight/vtol_flight.h"
 
 #include "flight/segment.h"
 #include "flight/select.h"
