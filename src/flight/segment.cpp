@@ -43,8 +43,8 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
     return edge;
 }
 
-/// Lets the take-off of a VTOL last at least until it first flies on its wing, and its landing begin at the latest where
-/// it last does, between lift-off and touchdown: hover and transitions are no part of the cruise.
+/// Ends the take-off of a VTOL, at the earliest, where it first flies on its wing, and begins its landing, at the latest,
+/// where it last does, between lift-off and touchdown: hover and transitions are no part of the cruise.
 void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown) {
     const auto spans = vtol_spans(data, flown.start_s, flown.end_s);
     const auto is_wing = [](const VtolSpan& span) { return span.flight == VtolFlight::wing; };
