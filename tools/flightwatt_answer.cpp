@@ -74,7 +74,8 @@ answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArgumen
     if (!capacity.warning.empty()) cli::warn(call, capacity.warning);
     auto pack = find_pack(records_of(call, uses), no_uses_reason, capacity, facts);
     if (pack.identified) {
-        const auto ledger = make_pack_ledger(std::move(uses), {pack.answer.capacity_ah.value});
+        const auto ledger = make_pack_ledger(
+            std::move(uses), {.capacity_ah = pack.answer.capacity_ah.value, .known = &*pack.identified});
         for (const auto& note : ledger.notes) cli::add_diagnostic(call, {Severity::note, "the pack", note});
         health = ledger.packs;
     }

@@ -104,12 +104,28 @@ CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std:
     return none;
 }
 
-FoundPack find_pack(std::span<const battery::DischargeRecord> records, const std::string& no_records_reason,
+std::vector<std::size_t> identified_records(std::span<const battery::DischargeRecord> records, std::size_t most) {
+    std::set<std::size_t> kept;
+    for (std::size_t i = 0; i < std::min(records.size(), most); ++i)
+        kept.insert(records.size() <= most ? i : i * (records.size() - 1) / (most - 1));
+    if (records.size() > most) {
+        const auto drawn_ah = [](const battery::DischargeRecord& record) { return record.charge_ah.back(); };
+        const auto fullest = std::ranges::max_element(records, {}, &battery::DischargeRecord::resting_voltage_v);
+        kept.insert({static_cast<std::size_t>(fullest - records.begin()),
+                     static_cast<std::size_t>(std::ranges::max_element(records, {}, drawn_ah) - records.begin())});
+    }
+    return {kept.begin(), kept.end()};
+}
+
+FoundPack find_pack(std::span<const battery::DischargeRecord> all, const std::string& no_records_reason,
                     CapacityChoice capacity, const std::vector<FlightFacts>& facts) {
-    if (records.empty()) return constant_pack(no_records_reason, capacity, facts);
+    if (all.empty()) return constant_pack(no_records_reason, capacity, facts);
+    std::vector<battery::DischargeRecord> records;
+    for (const auto i : identified_records(all)) records.push_back(all[i]);
     battery::IdentificationOptions options;
     options.capacity_ah = capacity.value_ah;
     options.name = "pack";
+    options.with_capacities = true;
     std::string contradiction;
     try {
         try {

@@ -54,6 +54,14 @@ struct CapacityChoice {
 /// Returns the given capacity, else what the logs state where all agree, else none.
 CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std::vector<FlightFacts>& facts);
 
+/// Uses of a pack that are identified together, which takes time with their square.
+inline constexpr std::size_t max_identified_uses = 60;
+
+/// Returns the numbers of the discharges that a pack is identified from: all, or of more than `most` so many evenly
+/// chosen ones, the fullest and the one that drew the most.
+std::vector<std::size_t> identified_records(std::span<const battery::DischargeRecord> records,
+                                            std::size_t most = max_identified_uses);
+
 /// Returns the pack that the discharges of flights determine. A logged capacity that contradicts them is not used, with
 /// a warning. Where they determine no circuit, it has the flights' mean voltage until it is empty. Throws NoResultError
 /// where that needs a capacity or a voltage that is unknown, and UsageError for a given capacity below what was drawn.

@@ -119,12 +119,12 @@ void follow_charge(std::vector<PackUse>& uses, const Numbers& numbers, bool is_o
     }
 }
 
-/// Some of many, evenly chosen with both ends.
-Numbers thinned(const Numbers& numbers, std::size_t most) {
-    if (numbers.size() <= most || most < 2) return numbers;
-    Numbers kept;
-    for (std::size_t i = 0; i < most; ++i) kept.push_back(numbers[i * (numbers.size() - 1) / (most - 1)]);
-    return kept;
+/// Whether an identification is of these records and this given capacity.
+bool is_of(const battery::BatteryIdentification& found, const std::vector<battery::DischargeRecord>& records,
+           const std::optional<double>& capacity_ah) {
+    return capacity_ah == found.capacity.value_ah && found.capacity.origin == battery::CapacityOrigin::given &&
+           std::ranges::equal(found.flights, records, {}, &battery::IdentifiedFlight::flight,
+                              &battery::DischargeRecord::flight);
 }
 
 /// One group of uses, which is identified as a whole.
@@ -160,16 +160,22 @@ class Identifier {
     }
 
     std::optional<battery::BatteryIdentification> identify(Pack& pack) {
-        const auto numbers = thinned(pack.uses, options_.max_uses);
-        if (numbers.size() < pack.uses.size())
-            note(pack, fmt::format("resistance and capacity are of {} of its {} flights, evenly chosen", numbers.size(),
-                                   pack.uses.size()));
         std::vector<battery::DischargeRecord> records;
+        for (const auto i : pack.uses) records.push_back(ledger_.uses[i].record);
+        Numbers numbers;
+        for (const auto k : identified_records(records, options_.max_uses)) numbers.push_back(pack.uses[k]);
+        if (numbers.size() < pack.uses.size())
+            note(pack,
+                 fmt::format("resistance and capacity are of {} of its {} flights: some evenly chosen, the fullest "
+                             "and the deepest",
+                             numbers.size(), pack.uses.size()));
+        records.clear();
         for (const auto i : numbers) records.push_back(ledger_.uses[i].record);
         battery::IdentificationOptions options{pack.label_ah ? pack.label_ah : options_.capacity_ah, {}, "", true};
         std::optional<battery::BatteryIdentification> found;
         try {
-            found = identify_battery(records, options);
+            const bool is_known = options_.known != nullptr && is_of(*options_.known, records, options.capacity_ah);
+            found = is_known ? *options_.known : identify_battery(records, options);
         } catch (const NoResultError& error) {
             note(pack, fmt::format("no resistances and no capacities: {}", error.what()));
             return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "answer/pack_answer.h"
 #include "answer/pack_names.h"
 #include "base/statistics.h"
 #include "batch/trend.h"
@@ -78,7 +79,9 @@ struct Pack {
 
 struct LedgerOptions {
     std::optional<double> capacity_ah;  ///< the label of packs without one
-    std::size_t max_uses = 60;          ///< that are identified together, which takes time with their square
+    std::size_t max_uses = max_identified_uses;
+    /// One of the same uses, with the capacities of its flights, by capacity_ah; it is not made again.
+    const battery::BatteryIdentification* known = nullptr;
 };
 
 struct PackLedger {

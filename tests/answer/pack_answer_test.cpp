@@ -28,6 +28,18 @@ TEST(ChooseCapacity, HasNoneWhereLogsDiffer) {
     EXPECT_FALSE(choose_capacity({}, {logged({})}).value_ah);
 }
 
+TEST(IdentifiedRecords, OfManyHaveBothEndsTheFullestAndTheDeepest) {
+    std::vector<battery::DischargeRecord> records(200);
+    for (auto& record : records) record.charge_ah = {0.0, 1.0};
+    EXPECT_EQ(identified_records(std::span(records).first(60)).size(), 60U);
+    records[76].charge_ah.back() = 2.0;
+    records[131].resting_voltage_v = 12.6;
+    const auto chosen = identified_records(records);
+    EXPECT_LE(chosen.size(), 62U);
+    EXPECT_TRUE(std::ranges::is_sorted(chosen));
+    for (const std::size_t number : {0U, 76U, 131U, 199U}) EXPECT_TRUE(std::ranges::binary_search(chosen, number));
+}
+
 TEST(FindPack, HasTheMeanVoltageWhereNothingElseIsKnown) {
     const auto pack = find_pack({}, "no current", {5.0, "as given"}, {logged({}, 15.0), logged({}, 16.0)});
     EXPECT_NEAR(pack.battery.voltage_v, 15.5, 1e-12);

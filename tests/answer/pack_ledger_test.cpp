@@ -172,8 +172,27 @@ TEST(PackLedger, DividesPacksOfOtherNumbersOfCells) {
 TEST(PackLedger, IsOfSomeFlightsWhereThereAreMany) {
     const auto ledger = make_pack_ledger(two_packs(true), {.capacity_ah = full_ah, .max_uses = 5});
     EXPECT_THAT(ledger.notes,
-                testing::Contains("pack A: resistance and capacity are of 5 of its 7 flights, evenly chosen"));
+                testing::Contains("pack A: resistance and capacity are of 5 of its 7 flights: some evenly "
+                                  "chosen, the fullest and the deepest"));
     EXPECT_THAT(names(ledger), ElementsAre("A: healthy", testing::_));
+}
+
+TEST(PackLedger, TakesAnIdentificationOfTheSameUsesAndCapacityAlone) {
+    std::vector<PackUse> uses;
+    std::vector<battery::DischargeRecord> records;
+    for (std::uint64_t f = 1; f < 7; ++f) {
+        uses.push_back(flown("A", static_cast<double>(f), first_ohm, f));
+        records.push_back(uses.back().record);
+    }
+    auto known = identify_battery(records, {full_ah, {}, "", true});
+    const auto own = make_pack_ledger(uses, {.capacity_ah = full_ah});
+    const auto same = make_pack_ledger(uses, {.capacity_ah = full_ah, .known = &known});
+    EXPECT_EQ(describe(same.packs.at(0)), describe(own.packs.at(0)));
+    known.cells = 77;
+    EXPECT_EQ(make_pack_ledger(uses, {.capacity_ah = full_ah, .known = &known}).packs.at(0).cells, 77);
+    EXPECT_EQ(make_pack_ledger(uses, {.capacity_ah = 1.1 * full_ah, .known = &known}).packs.at(0).cells, 3);
+    uses.pop_back();
+    EXPECT_EQ(make_pack_ledger(uses, {.capacity_ah = full_ah, .known = &known}).packs.at(0).cells, 3);
 }
 
 }  // namespace
