@@ -23,7 +23,9 @@ void expect_right(const std::string& folder) {
                                              " --json " + test::shell_quoted(shared / "archives" / folder),
                                          test::scratch_dir());
     ASSERT_LE(checked.code, 1) << checked.err;
-    for (const auto& log : nlohmann::json::parse(checked.out).at("files")) {
+    const auto logs = nlohmann::json::parse(checked.out);
+    ASSERT_FALSE(logs.at("files").empty());
+    for (const auto& log : logs.at("files")) {
         const auto file = log.at("file").get<std::string>();
         const bool is_known = known_faults.contains(file);
         EXPECT_TRUE(is_known || log.at("right").get<bool>()) << file << ": " << log.at("wrong").dump();
