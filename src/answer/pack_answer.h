@@ -57,8 +57,8 @@ CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std:
 /// Uses of a pack that are identified together, which takes time with their square.
 inline constexpr std::size_t max_identified_uses = 60;
 
-/// Returns the numbers of the discharges that a pack is identified from: all, or of more than `most` so many evenly
-/// chosen ones, the fullest and the one that drew the most.
+/// Returns the numbers of the discharges that a pack is identified from: all, or of more than `most` (two or more)
+/// so many evenly chosen ones, the fullest and the one that drew the most.
 std::vector<std::size_t> identified_records(std::span<const battery::DischargeRecord> records,
                                             std::size_t most = max_identified_uses);
 

@@ -163,14 +163,16 @@ class Identifier {
         std::vector<battery::DischargeRecord> records;
         for (const auto i : pack.uses) records.push_back(ledger_.uses[i].record);
         Numbers numbers;
-        for (const auto k : identified_records(records, options_.max_uses)) numbers.push_back(pack.uses[k]);
+        for (const auto k : identified_records(records, options_.max_uses)) {
+            if (k > numbers.size()) records[numbers.size()] = std::move(records[k]);
+            numbers.push_back(pack.uses[k]);
+        }
+        records.resize(numbers.size());
         if (numbers.size() < pack.uses.size())
             note(pack,
                  fmt::format("resistance and capacity are of {} of its {} flights: some evenly chosen, the fullest "
                              "and the deepest",
                              numbers.size(), pack.uses.size()));
-        records.clear();
-        for (const auto i : numbers) records.push_back(ledger_.uses[i].record);
         battery::IdentificationOptions options{pack.label_ah ? pack.label_ah : options_.capacity_ah, {}, "", true};
         std::optional<battery::BatteryIdentification> found;
         try {

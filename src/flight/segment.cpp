@@ -43,18 +43,6 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
     return edge;
 }
 
-/// Ends the take-off of a VTOL, at the earliest, where it first flies on its wing, and begins its landing, at the latest,
-/// where it last does, between lift-off and touchdown: hover and transitions are no part of the cruise.
-void include_transitions(const FlightData& data, SortieEdges& edges, const TimeInterval& flown) {
-    const auto spans = vtol_spans(data, flown.start_s, flown.end_s);
-    const auto is_wing = [](const VtolSpan& span) { return span.flight == VtolFlight::wing; };
-    const auto first = std::ranges::find_if(spans, is_wing);
-    if (first == spans.end()) return;
-    const auto last = std::find_if(spans.rbegin(), spans.rend(), is_wing);
-    if (edges.takeoff_end_s) edges.takeoff_end_s = std::max(*edges.takeoff_end_s, first->start_s);
-    if (edges.landing_start_s) edges.landing_start_s = std::min(*edges.landing_start_s, last->end_s);
-}
-
 Sortie make_sortie(const FlightCandidate& flown) {
     const auto& grid = flown.grid;
     auto edges = grid.hovers.empty() ? find_edges(grid, flown.activity, flown.heights, flown.options)
@@ -63,7 +51,11 @@ Sortie make_sortie(const FlightCandidate& flown) {
     if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(flown.activity.span.begin));
     const double last_s = edges.touchdown_s.value_or(grid.time_s(flown.activity.span.end - 1));
-    include_transitions(flown.data, edges, {first_s, last_s});
+    if (const auto wing =
+            wing_flight(flown.data, first_s, last_s)) {  // hover and transitions are no part of the cruise
+        if (edges.takeoff_end_s) edges.takeoff_end_s = std::max(*edges.takeoff_end_s, wing->start_s);
+        if (edges.landing_start_s) edges.landing_start_s = std::min(*edges.landing_start_s, wing->end_s);
+    }
     const double cruise_from = edges.takeoff_end_s.value_or(first_s);
     const double cruise_to = std::max(edges.landing_start_s.value_or(last_s), cruise_from);
     Sortie sortie;

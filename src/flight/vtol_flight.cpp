@@ -31,10 +31,11 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
     std::vector<VtolSpan> spans;
     if (state.empty() || !(start_s < end_s)) return spans;
     spans.push_back({{start_s, end_s}, flight_of(state_at(state, start_s))});
-    for (std::size_t i = 0; i < state.time_s.size(); ++i) {
+    const auto first = std::ranges::upper_bound(state.time_s, start_s) - state.time_s.begin();
+    for (auto i = static_cast<std::size_t>(first); i < state.time_s.size() && state.time_s[i] < end_s; ++i) {
         const double time_s = state.time_s[i];
         const auto flight = flight_of(state.value[i]);
-        if (time_s <= start_s || time_s >= end_s || flight == spans.back().flight) continue;
+        if (flight == spans.back().flight) continue;
         spans.back().end_s = time_s;
         spans.push_back({{time_s, end_s}, flight});
     }
@@ -43,6 +44,13 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
 
 bool is_on_wing(const FlightData& data, double start_s, double end_s) {
     return std::ranges::all_of(vtol_spans(data, start_s, end_s), is_wing);
+}
+
+std::optional<TimeInterval> wing_flight(const FlightData& data, double start_s, double end_s) {
+    const auto spans = vtol_spans(data, start_s, end_s);
+    const auto first = std::ranges::find_if(spans, is_wing);
+    if (first == spans.end()) return std::nullopt;
+    return TimeInterval{first->start_s, std::find_if(spans.rbegin(), spans.rend(), is_wing)->end_s};
 }
 
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {
@@ -60,6 +68,7 @@ std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {
 }
 
 std::string describe_vtol(const FlightData& data, const Sortie& sortie) {
+    if (data.vtol_state.empty()) return "";
     const PowerStatistics power(data);
     std::array<double, 3> duration_s{};
     std::array<double, 3> energy_wh{};

@@ -3,6 +3,7 @@
 #include "flight/flight_data.h"
 #include "flight/flight_phases.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,9 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
 
 /// Returns whether an aircraft is on its wing throughout an interval; true for one that is no VTOL.
 bool is_on_wing(const FlightData& data, double start_s, double end_s);
+
+/// Returns the time from the first to the last wing flight of a VTOL between two times; std::nullopt without any.
+std::optional<TimeInterval> wing_flight(const FlightData& data, double start_s, double end_s);
 
 /// Returns a warning of hover or transitions within the cruise of a VTOL that flies on its wing there; empty without.
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie);

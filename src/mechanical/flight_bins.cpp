@@ -155,7 +155,8 @@ BinnedFlight bin_flight(const flight::FlightData& data, const std::vector<flight
         }
     }
     if (motion.bins.empty())
-        motion.no_bins_reason = "power, airspeed and altitude were never measured at the same time";
+        motion.no_bins_reason = fmt::format("power, airspeed and altitude were never measured at the same time{}",
+                                            data.vtol_state.empty() ? "" : " on the wing");
     return motion;
 }
 

@@ -1,5 +1,6 @@
 #include "flight/vtol_flight.h"
 
+#include "flight/phase_statistics.h"
 #include "flight/segment.h"
 #include "flight/select.h"
 #include "helpers/flown_points.h"

@@ -181,7 +181,8 @@ std::set<std::string> add_family_tracks(const telemetry::SenderLog& sender, cons
             add_fix(of, *table, instances_of(*table, family), sources.front().column->values, tracks);
         else if (!sources.empty())
             add_tracks(of, *table, instances_of(*table, family), sources, tracks);
-        if (of.compute == lift_motors_run && !sources.empty()) add_wing_flight(last_time_s(sender), tracks.back());
+        if (of.compute == lift_motors_run && !sources.empty() && !table->empty())
+            add_wing_flight(last_time_s(sender), tracks.back());
         for (const auto& source : sources)
             if (std::string_view(of.track) == "power_w" && !source.unit.empty())
                 assumed.insert(fmt::format("{}.{} is read in {}", of.message, source.column->field, source.unit));

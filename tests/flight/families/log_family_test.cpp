@@ -67,6 +67,7 @@ TEST(LogFamily, ReadsCapacitiesOfPacksFromParametersInMilliampereHours) {
 TEST(LogFamily, ReadsThatAQuadplaneIsOnItsWingWhileItLogsNoLiftMotors) {
     auto log = test::dataflash_log(300, "ArduPlane V4.3.1 (2cb4b85a)") +
                test::dataflash_format(4, "QTUN", "Qf", "TimeUS,ThO", 12);
+    EXPECT_TRUE(select_track(series_of(log), "vtol_state").empty()) << "defined, but never sent";
     const auto add_lift = [&](double from_s, double to_s) {
         for (double time_s = from_s; time_s <= to_s; time_s += 0.25)
             log += test::dataflash_message(
