@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 /// A sortie from 100 to 470 s that climbs to 100 m until 130 s and descends from 430 s on; hover takes 300 W, a
 /// transition 200 W and the wing 80 W.
-FlightData vtol(std::vector<double> time_s, std::vector<VtolState> states) {
+FlightData vtol(std::vector<double> time_s, const std::vector<VtolState>& states) {
     auto columns = test::columns_of(test::sortie(100.0), 0.1);
     Track state{.name = "vtol_state", .source = "x", .time_s = std::move(time_s)};
     for (const auto each : states) state.value.push_back(static_cast<double>(each));

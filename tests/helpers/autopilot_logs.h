@@ -2,6 +2,7 @@
 
 #include "telemetry/autopilot_log.h"
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -46,7 +47,8 @@ inline std::string dataflash_log(int samples, std::string_view firmware = "ArduC
                dataflash_format(3, "MSG", "QZ", "TimeUS,Message", 72);
     log += dataflash_text(3, firmware) + dataflash_text(3, "Pixracer 002A001A 3038510C 31353236");
     for (int i = 0; i < samples; ++i) {
-        const auto time = little_endian(std::uint64_t{10'000'000} + 100'000U * static_cast<unsigned>(i));
+        const auto time =
+            little_endian(std::uint64_t{10'000'000} + std::uint64_t{100'000} * static_cast<std::uint64_t>(i));
         const auto step = static_cast<float>(i);
         log += dataflash_message(1, time + little_endian(16.0F - 0.001F * step) + little_endian(10.0F + 0.1F * step));
         log += dataflash_message(2, time + little_endian(0.5F * step));
@@ -73,7 +75,7 @@ inline std::string ulog_header(std::uint8_t incompatible = 0) {
 }
 
 inline std::string ulog_battery(std::uint16_t id, double time_s, float voltage_v, float current_a) {
-    return ulog_message('D', little_endian(id) + little_endian(static_cast<std::uint64_t>(time_s * 1e6 + 0.5)) +
+    return ulog_message('D', little_endian(id) + little_endian(static_cast<std::uint64_t>(std::llround(time_s * 1e6))) +
                                  little_endian(voltage_v) + little_endian(current_a) + '\x01');
 }
 

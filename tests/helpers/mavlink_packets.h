@@ -3,6 +3,7 @@
 #include "helpers/autopilot_logs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -84,7 +85,7 @@ struct MavlinkSender {
 
 /// An entry of a .tlog: the time of reception, big-endian, and the packet.
 inline std::string tlog_entry(double time_s, const std::string& packet) {
-    const auto time_us = std::uint64_t{1'780'000'000'000'000} + static_cast<std::uint64_t>(time_s * 1e6 + 0.5);
+    const auto time_us = std::uint64_t{1'780'000'000'000'000} + static_cast<std::uint64_t>(std::llround(time_s * 1e6));
     std::string time;
     for (int shift = 56; shift >= 0; shift -= 8) time += static_cast<char>(time_us >> shift);
     return time + packet;

@@ -1,12 +1,14 @@
 #include "flight/families/log_family.h"
 
 #include "base/input_file.h"
+#include "base/units.h"
 #include "flight/flight_identity.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/series_file.h"
 #include "helpers/autopilot_logs.h"
 #include "helpers/rejected.h"
+#include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
 #include <algorithm>
@@ -15,6 +17,7 @@
 #include <random>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -173,7 +176,7 @@ TEST(LogFamily, OfPx4Until2018HasItsBarometerInSensorCombined) {
                test::ulog_subscription(0, 9, "sensor_combined");
     for (int i = 0; i < 3; ++i)
         log += test::ulog_message('D', test::little_endian(std::uint16_t{9}) +
-                                           test::little_endian(std::uint64_t{20'000'000} + 100'000U * i) +
+                                           test::little_endian(std::uint64_t{20'000'000} + std::uint64_t{100'000} * i) +
                                            test::little_endian(500.0F + static_cast<float>(i)));
     EXPECT_EQ(select_track(series_of(log, "x.ulg"), "altitude_m").source, "sensor_combined.baro_alt_meter");
 }
@@ -188,12 +191,13 @@ TEST(LogFamily, OfSdlog2IsReadAsPx4) {
                test::dataflash_message(11, test::padded("MAV_TYPE", 16) + test::little_endian(2.0F));
     for (unsigned i = 0; i < 20; ++i) {
         const auto step = static_cast<float>(i);
-        log += test::dataflash_message(129, test::little_endian(std::uint64_t{3'000'000} + 100'000 * i)) +
-               test::dataflash_message(
-                   20, test::little_endian(16.0F) + test::little_endian(step) + test::little_endian(100.0F * step)) +
-               test::dataflash_message(4, test::little_endian(1000.0F) + test::little_endian(500.0F + step)) +
-               test::dataflash_message(9, std::string(12, '\0') + test::little_endian(0.25F + 0.01F * step)) +
-               test::dataflash_message(10, std::string("\x03\x03\x02", 3) + std::string(5, '\0') + '\x01');
+        log +=
+            test::dataflash_message(129, test::little_endian(std::uint64_t{3'000'000} + std::uint64_t{100'000} * i)) +
+            test::dataflash_message(
+                20, test::little_endian(16.0F) + test::little_endian(step) + test::little_endian(100.0F * step)) +
+            test::dataflash_message(4, test::little_endian(1000.0F) + test::little_endian(500.0F + step)) +
+            test::dataflash_message(9, std::string(12, '\0') + test::little_endian(0.25F + 0.01F * step)) +
+            test::dataflash_message(10, std::string("\x03\x03\x02", 3) + std::string(5, '\0') + '\x01');
     }
     const auto series = series_of(log, "x.px4log");
     EXPECT_EQ(series.aircraft_name, "PX4");
@@ -218,7 +222,8 @@ FlightSeries with_smart_batteries(std::uint16_t first, std::uint16_t second, std
     for (unsigned i = 0; i < 20; ++i)
         for (const std::uint16_t topic : {7, 8})
             log += test::ulog_message(
-                'D', test::little_endian(topic) + test::little_endian(std::uint64_t{10'000'000} + 200'000 * i + topic) +
+                'D', test::little_endian(topic) +
+                         test::little_endian(std::uint64_t{10'000'000} + std::uint64_t{200'000} * i + topic) +
                          test::little_endian(22.0F) + test::little_endian(10.0F + 0.1F * static_cast<float>(i % 2)) +
                          test::little_endian(cycles) + test::little_endian(topic == 7 ? first : second) + '\x01');
     return series_of(log, "x.ulg");
@@ -309,10 +314,11 @@ FlightSeries with_temperatures(double first_c, double second_c) {
     for (unsigned i = 0; i < 50; ++i)
         for (const std::uint8_t battery : {0, 1}) {
             const double temperature_c = battery == 0 ? (i == 7 ? 0.0 : first_c) : second_c;
-            log += test::dataflash_message(
-                1, test::little_endian(std::uint64_t{10'000'000} + 100'000 * i) + test::little_endian(battery) +
-                       test::little_endian(22.0F) + test::little_endian(battery == 0 ? 10.0F : 5.0F) +
-                       test::little_endian(static_cast<std::int16_t>(100.0 * temperature_c)));
+            log +=
+                test::dataflash_message(1, test::little_endian(std::uint64_t{10'000'000} + std::uint64_t{100'000} * i) +
+                                               test::little_endian(battery) + test::little_endian(22.0F) +
+                                               test::little_endian(battery == 0 ? 10.0F : 5.0F) +
+                                               test::little_endian(static_cast<std::int16_t>(100.0 * temperature_c)));
         }
     return series_of(log);
 }
@@ -337,8 +343,9 @@ TEST(Batteries, OfPx4WithoutASensorStateNoTemperature) {
         for (unsigned i = 0; i < 20; ++i)
             log += test::ulog_message(
                 'D', test::little_endian(std::uint16_t{7}) +
-                         test::little_endian(std::uint64_t{10'000'000} + 200'000 * i) + test::little_endian(22.0F) +
-                         test::little_endian(10.0F + 0.1F * static_cast<float>(i)) + test::little_endian(stated_c));
+                         test::little_endian(std::uint64_t{10'000'000} + std::uint64_t{200'000} * i) +
+                         test::little_endian(22.0F) + test::little_endian(10.0F + 0.1F * static_cast<float>(i)) +
+                         test::little_endian(stated_c));
         return first_value(select_tracks(series_of(log, "x.ulg")).battery_temperature_c);
     };
     EXPECT_EQ(temperature_c(21.5F), 21.5);

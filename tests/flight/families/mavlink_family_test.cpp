@@ -13,7 +13,6 @@
 namespace flightwatt::flight {
 namespace {
 
-using testing::DoubleNear;
 using testing::HasSubstr;
 
 std::filesystem::path written(const std::string& bytes) {
