@@ -111,9 +111,13 @@ const KnownFile* find_known_file(std::string_view text) {
         return all;
     }();
     const auto begin = text.substr(0, 4096);
-    for (std::size_t i = 0; i < signs.size(); ++i)
-        if (!known_files()[i].sign.empty() && std::regex_search(begin.begin(), begin.end(), signs[i]))
-            return &known_files()[i];
+    for (std::size_t i = 0; i < signs.size(); ++i) {
+        const auto& sign = known_files()[i].sign;
+        // Not sought further on, which would take far longer.
+        const auto where =
+            sign.starts_with('^') ? std::regex_constants::match_continuous : std::regex_constants::match_default;
+        if (!sign.empty() && std::regex_search(begin.begin(), begin.end(), signs[i], where)) return &known_files()[i];
+    }
     return nullptr;
 }
 

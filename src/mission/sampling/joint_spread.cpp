@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <numeric>
+#include <shared_mutex>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/interpolators/cubic_hermite.hpp>
 
 namespace flightwatt::mission {
 namespace {
@@ -19,6 +23,48 @@ constexpr double min_chance = 1e-300;
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using Student = boost::math::students_t_distribution<double, Policy>;
 using Normal = boost::math::normal_distribution<double, Policy>;
+
+/// Student's t with the same tail probability as a positive standard normal number.
+double exact_student(double normal, double degrees_of_freedom) {
+    const double beyond = std::max(min_chance, cdf(complement(Normal(), normal)));
+    return quantile(complement(Student(degrees_of_freedom), beyond));
+}
+
+/// The same of numbers up to `end`, a hundred times faster, by its area hyperbolic sine, which rises slowly.
+class StudentTable {
+  public:
+    static constexpr double end = 8.0;
+
+    explicit StudentTable(double degrees_of_freedom) {
+        std::vector<double> values;
+        std::vector<double> slopes;
+        for (int i = 0; i <= per_unit * static_cast<int>(end); ++i) {
+            const double normal = static_cast<double>(i) / per_unit;
+            const double t = exact_student(normal, degrees_of_freedom);
+            values.push_back(std::asinh(t));
+            slopes.push_back(pdf(Normal(), normal) / pdf(Student(degrees_of_freedom), t) / std::hypot(1.0, t));
+        }
+        area_sinh_.emplace(std::move(values), std::move(slopes), 0.0, 1.0 / per_unit);
+    }
+
+    double operator()(double normal) const { return std::sinh((*area_sinh_)(normal)); }
+
+  private:
+    static constexpr int per_unit = 128;
+    std::optional<boost::math::interpolators::cardinal_cubic_hermite<std::vector<double>>> area_sinh_;
+};
+
+/// The table of some degrees of freedom, made once.
+const StudentTable& student_table(double degrees_of_freedom) {
+    static std::shared_mutex mutex;
+    static std::map<double, StudentTable> tables;
+    {
+        const std::shared_lock reading(mutex);
+        if (const auto known = tables.find(degrees_of_freedom); known != tables.end()) return known->second;
+    }
+    const std::unique_lock writing(mutex);
+    return tables.try_emplace(degrees_of_freedom, degrees_of_freedom).first->second;
+}
 
 /// The flights that have the quantity of each of `spreads`, a row a flight, less their means.
 Eigen::MatrixXd centred_flights(const std::vector<EstimatedSpread>& spreads) {
@@ -101,8 +147,9 @@ Interval interval_of_share(const Interval& drawn, double degrees_of_freedom) {
 
 double student_from_normal(double normal, double degrees_of_freedom) {
     if (normal == 0.0 || std::isinf(degrees_of_freedom)) return normal;
-    const double beyond = std::max(min_chance, cdf(complement(Normal(), std::abs(normal))));
-    const double student = quantile(complement(Student(degrees_of_freedom), beyond));
+    const double size = std::abs(normal);
+    const double student =
+        size < StudentTable::end ? student_table(degrees_of_freedom)(size) : exact_student(size, degrees_of_freedom);
     return std::copysign(std::min(student, max_student), normal);
 }
 

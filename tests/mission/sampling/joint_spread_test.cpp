@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
 
@@ -23,6 +24,15 @@ TEST(Student, LiesAsFarOutAsTheNormal) {
     EXPECT_EQ(student_from_normal(1.3, infinite_dof), 1.3);
     EXPECT_EQ(student_from_normal(0.0, 2.0), 0.0);
     EXPECT_EQ(student_from_normal(-1.3, 2.0), -student_from_normal(1.3, 2.0));
+}
+
+TEST(Student, OfTablesIsThatOfTheDistribution) {
+    for (const double freedom : {1.0, 2.0, 3.5, 30.0, 1000.0})
+        for (double normal = 0.003; normal < 8.5; normal += 0.0517) {
+            const double beyond = cdf(complement(boost::math::normal(), normal));
+            const double exact = std::min(max_student, quantile(complement(boost::math::students_t(freedom), beyond)));
+            EXPECT_NEAR(student_from_normal(normal, freedom) / exact, 1.0, 1e-9) << freedom << ", " << normal;
+        }
 }
 
 TEST(Student, EndsSomewhere) {
