@@ -42,7 +42,7 @@ struct Document {
 
 Document read_document(const std::filesystem::path& path);
 
-/// Examples that no page shows, of files that programs write: tests/docs/files, with the name of a file as its kind.
+/// Examples that no page shows: tests/docs/files, with the name of a file as its kind.
 std::vector<DocumentedExample> example_files();
 
 /// All pages of the project: README.md and the others of its folder, docs/, docs/reference/ and logs/README.md.
