@@ -52,6 +52,15 @@ std::span<const TrackMember> track_members() {
     return members;
 }
 
+const std::vector<std::string>& track_names() {
+    static const auto names = [] {
+        std::vector<std::string> all;
+        for (const auto& [name, member] : track_members()) all.emplace_back(name);
+        return all;
+    }();
+    return names;
+}
+
 std::optional<double> first_value(const Track& track) {
     return track.empty() ? std::nullopt : std::optional(track.value.front());
 }

@@ -112,6 +112,9 @@ struct TrackMember {
 /// Returns all quantities, in the order of the series file's columns.
 std::span<const TrackMember> track_members();
 
+/// Returns their names, which are those of the tracks of a FlightSeries.
+const std::vector<std::string>& track_names();
+
 /// Returns the first value of a track; std::nullopt for an empty one.
 std::optional<double> first_value(const Track& track);
 /// Returns the last value of a track; std::nullopt for an empty one.

@@ -106,45 +106,6 @@ bool is_constant(const Track& track) {
                        [&](double value) { return value == track.value.front(); });
 }
 
-const std::vector<std::string>& track_names() {
-    static const std::vector<std::string> names{"altitude_m",
-                                                "throttle_percent",
-                                                "voltage_v",
-                                                "current_a",
-                                                "power_w",
-                                                "charge_ah",
-                                                "energy_wh",
-                                                "east_m",
-                                                "north_m",
-                                                "ground_speed_m_per_s",
-                                                "airspeed_m_per_s",
-                                                "wind_speed_m_per_s",
-                                                "wind_east_m_per_s",
-                                                "wind_north_m_per_s",
-                                                "latitude_deg",
-                                                "longitude_deg",
-                                                "heading_deg",
-                                                "course_deg",
-                                                "climb_m_per_s",
-                                                "roll_deg",
-                                                "air_temperature_c",
-                                                "battery_temperature_c",
-                                                "motor_speed_rpm",
-                                                "mass_kg",
-                                                "rotor_area_m2",
-                                                "mode",
-                                                "block",
-                                                "rover_mode",
-                                                "takeoff",
-                                                "armed",
-                                                "landed",
-                                                "fix",
-                                                "vtol_state",
-                                                "ground_altitude_m",
-                                                "payload_kg"};
-    return names;
-}
-
 double last_time_s(const FlightSeries& series) {
     double end_s = -std::numeric_limits<double>::infinity();
     for (const auto& track : series.tracks) {

@@ -127,9 +127,6 @@ struct FlightSeries : FlightInfo {
     bool operator==(const FlightSeries&) const = default;
 };
 
-/// Returns all names of tracks, in the order of the series file's columns.
-const std::vector<std::string>& track_names();
-
 /// Returns the last time at which any source of power or altitude was logged; -infinity without any.
 double last_time_s(const FlightSeries& series);
 

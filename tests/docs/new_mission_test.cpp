@@ -143,7 +143,7 @@ TEST_F(NewMissions, HoldEveryKeyOfTheDocumentation) {
         if (documented.section != "Mission file" || is_free) continue;
         ++keys;
         EXPECT_TRUE(std::regex_search(text, std::regex("(^|[^a-z_])" + documented.key + "([^a-z_]|$)")))
-            << "line " << documented.line << ": " << documented.key;
+            << "line " << documented.line << ": config/new_mission.toml.in lacks " << documented.key;
     }
     EXPECT_GT(keys, 80U) << "the page was not read";
 }

@@ -1,6 +1,7 @@
 #include "flight/series_file.h"
 
 #include "base/error.h"
+#include "flight/flight_data.h"
 #include "flight/power_check.h"
 #include "flight/power_report.h"
 #include "flight/telemetry_series.h"
@@ -68,7 +69,7 @@ FlightSeries long_series() {
     series.flight = "x";
     std::mt19937 random(3);
     for (std::size_t t = 0; t < 40; ++t) {
-        Track track{.name = track_names().at(t % 20), .source = "series CSV"};
+        Track track{.name = track_names().at(t % track_names().size()), .source = "series CSV"};
         if (t % 3 == 1) track.time_s = series.tracks.back().time_s;
         const bool has_clock = !track.time_s.empty();
         const auto samples = has_clock ? track.time_s.size() : 200 + 1500 * (t % 7);

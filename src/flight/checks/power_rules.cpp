@@ -63,7 +63,7 @@ struct PowerRule {
     double warn_above = infinite;
     double fault_above = infinite;
     bool needs_energy = true;      ///< of a warning: skipped if the energy in flight is not positive (a fault)
-    bool unless_previous = false;  ///< skipped if the previous rule has a finding
+    bool unless_previous = false;  ///< skipped if the rule directly above it in the table has a finding
 };
 
 /// No load draws a negative current, so that less of it is the sensor's offset.

@@ -1,6 +1,7 @@
 #include "flight/families/log_family.h"
 
 #include "flight/families/derived_tracks.h"
+#include "flight/flight_data.h"
 
 #include <algorithm>
 #include <array>

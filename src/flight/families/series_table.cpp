@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
+#include "flight/flight_data.h"
 #include "flight/select.h"
 #include "flight/telemetry_series.h"
 
