@@ -44,7 +44,18 @@ std::optional<double> take_date(std::string_view& text) {
     return static_cast<double>(sys_days(date).time_since_epoch().count()) * seconds_per_day;
 }
 
-/// "10:17:15.060", as seconds of the day.
+/// " PM" or "am", if it follows: whether it is the afternoon.
+std::optional<bool> take_half_of_day(std::string_view& text) {
+    const auto rest = text.starts_with(' ') ? text.substr(1) : text;
+    for (const std::string_view half : {"AM", "am", "PM", "pm"}) {
+        if (!rest.starts_with(half)) continue;
+        text = rest.substr(half.size());
+        return half.starts_with('P') || half.starts_with('p');
+    }
+    return std::nullopt;
+}
+
+/// "10:17:15.060", also "10:17:15 AM", as seconds of the day.
 std::optional<double> take_time(std::string_view& text) {
     const auto hours = take_number(text, 2);
     if (!hours || *hours > 23 || !take(text, ':')) return std::nullopt;
@@ -60,18 +71,26 @@ std::optional<double> take_time(std::string_view& text) {
         time_s += static_cast<double>(*fraction) / std::pow(10.0, static_cast<double>(size - 1));
         text.remove_prefix(size);
     }
-    return time_s;
+    const auto is_afternoon = take_half_of_day(text);
+    if (!is_afternoon) return time_s;
+    constexpr unsigned noon = 12;
+    if (*hours == 0 || *hours > noon) return std::nullopt;
+    return time_s + ((*is_afternoon ? noon : 0.0) - (*hours == noon ? noon : 0.0)) * units::seconds_per_hour;
 }
 
-/// "Z", "+01:00" or nothing, as seconds ahead of UTC.
+/// "Z", "+01:00", "+0100" or nothing, as seconds ahead of UTC.
 std::optional<double> take_zone(std::string_view& text) {
     if (text.empty() || take(text, 'Z')) return 0.0;
     const double sign = text.starts_with('-') ? -1.0 : 1.0;
     if (!take(text, '+') && !take(text, '-')) return std::nullopt;
-    const auto hours = take_number(text, 2);
-    const auto minutes = take(text, ':') ? take_number(text, 2) : 0U;
-    if (!hours || !minutes) return std::nullopt;
-    return sign * (*hours * units::seconds_per_hour + *minutes * units::seconds_per_minute);
+    constexpr std::size_t both_digits = 4;
+    constexpr unsigned hour = 100;
+    const bool are_joined = text.size() == both_digits && text.find(':') == std::string_view::npos;
+    const auto number = take_number(text, are_joined ? both_digits : 2);
+    const auto minutes = are_joined ? number : take(text, ':') ? take_number(text, 2) : 0U;
+    if (!number || !minutes) return std::nullopt;
+    return sign * ((are_joined ? *number / hour : *number) * units::seconds_per_hour +
+                   *minutes % hour * units::seconds_per_minute);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct ClockTime {
 };
 
 /// Reads "10:17:15.060", "2026-01-02", "2026-01-02 10:17:15", "2026-01-02T10:17:15.060+01:00" (ISO 8601, also with
-/// slashes). std::nullopt for anything else.
+/// slashes), "10:17:15 AM" (of 12 hours). std::nullopt for anything else.
 std::optional<ClockTime> parse_clock_time(std::string_view text);
 
 /// A column of times: numbers, or times of a clock, which begin at 0 and may pass midnight.
@@ -25,6 +25,8 @@ class TimeColumn {
     /// Seconds of the log; std::nullopt for a cell that is no time, or of another kind than the first. `date`: the day
     /// of a time without one.
     std::optional<double> read(std::string_view cell, std::string_view date = {});
+    /// Whether the times are of a clock; false for numbers.
+    bool is_clock() const { return is_clock_; }
     /// Unix time of second 0 (UTC where no zone is stated), if the first row states it.
     std::optional<double> start_clock_s() const { return start_clock_s_; }
 

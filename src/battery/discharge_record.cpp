@@ -37,8 +37,7 @@ void require_channels(const flight::FlightData& data, const PackRecord& record) 
         throw InputError({data.file}, fmt::format("{}: {}", data.flight, reason), hint);
     };
     if (data.current_origin == flight::CurrentOrigin::throttle) {
-        refuse("its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), not measured",
-               "use flights with a current sensor");
+        refuse("its current was computed from throttle, not measured", "use flights with a current sensor");
     }
     if (record.voltage_v.empty()) refuse("has no voltage", needed);
     if (record.current_a.empty()) refuse("has no current", needed);

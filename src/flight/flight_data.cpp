@@ -90,8 +90,8 @@ Diagnostics selection_diagnostics(const FlightData& data) {
     }
     if (data.current_origin == CurrentOrigin::throttle)
         add(warning, "current computed from the throttle",
-            {"the airframe defines MILLIAMP_AT_FULL_THROTTLE and no current sensor: the current is computed from the "
-             "throttle, so a power model fitted to it is circular"});
+            {"there is no current sensor (by MILLIAMP_AT_FULL_THROTTLE of the airframe, or BATT_MONITOR = 25): the "
+             "current is computed from the throttle, so a power model fitted to it is circular"});
     if (!data.power_w.empty())  // else see no_power_reason
         for (const auto& reason : data.power_w.not_chosen)
             add(warning, "unusable source of power",

@@ -86,9 +86,12 @@ struct ClockRestart {
     bool operator==(const ClockRestart&) const = default;
 };
 
-/// Kinds of battery monitors that measure no pack of their own: the sum of others, or of the ESCs.
+/// Kinds of battery monitors that measure no pack of their own: the sum of others, or of the ESCs; fuel; and a current
+/// that is computed from the throttle.
 inline constexpr auto sum_monitor = "sum";
 inline constexpr auto escs_monitor = "ESCs";
+inline constexpr auto fuel_monitor = "fuel";
+inline constexpr auto throttle_monitor = "throttle";
 
 /// What a log states of a flight apart from its tracks.
 struct FlightInfo {
@@ -103,12 +106,13 @@ struct FlightInfo {
     std::optional<double> planned_ground_altitude_m;
     std::optional<double> start_clock_s;     ///< Unix time of the log's second 0
     std::map<int, std::string> block_names;  ///< names of the values of the track "block"
-    /// Kinds of battery monitors by the log's parameters, by id: sum_monitor or escs_monitor.
+    /// Kinds of battery monitors by the log's parameters, by id, if they are of these above.
     std::map<std::string, std::string> monitor_kinds;
     /// Capacities of the monitors' packs by the log's parameters (BATT_CAPACITY, BAT1_CAPACITY), by id [Ah].
     std::map<std::string, double> monitor_capacities_ah;
     std::string pack_serial;            ///< of a smart battery, joined by "+" of several; empty if unknown
     std::optional<double> pack_cycles;  ///< charge cycles that it counts; of several the most
+    std::optional<double> motors;       ///< their number by the log's parameters
     bool log_is_missing = false;        ///< the log has no .log
 
     std::vector<telemetry::AssumedDefinition> assumed_definitions;

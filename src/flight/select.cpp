@@ -7,6 +7,7 @@
 #include "flight/select/device_sum.h"
 #include "flight/select/outliers.h"
 #include "flight/select/power.h"
+#include "flight/select/supply.h"
 #include "flight/select/throttle.h"
 
 #include <algorithm>
@@ -85,13 +86,50 @@ void choose_voltage_and_current(const FlightSeries& series, FlightData& data) {
         data.stated_capacity_ah = series.monitor_capacities_ah.begin()->second;
 }
 
+/// Puts the ESCs in the place of batteries without a power, whose voltage stays, or of those that do not supply them.
+void use_escs(const FlightSeries& series, std::string reason, bool is_their_pack, FlightData& data) {
+    auto not_chosen = std::move(data.power_w.not_chosen);
+    if (!reason.empty()) not_chosen.push_back(std::move(reason));
+    data.power_w = select_esc_power(series);
+    prepend(data.power_w.not_chosen, std::move(not_chosen));
+    if (data.power_w.empty() && is_their_pack) return;
+    data.current_a = {sum_over_devices(devices_of(series, "current_a", "ESC")).track};
+    data.charge_ah = data.energy_wh = {};
+    data.circuits.clear();
+    data.notes = series.notes;
+    if (is_their_pack) return;
+    const auto escs = devices_of(series, "voltage_v", "ESC");
+    data.voltage_v = escs.empty() ? ChosenTrack{} : ChosenTrack{escs.front().track};
+    data.battery_temperature_c = {};
+    data.stated_capacity_ah.reset();
+}
+
+/// ESCs draw what the batteries give: a source that gives less is no measurement of their supply.
+void check_supply(const FlightSeries& series, FlightData& data) {
+    if (data.power_w.empty() && !data.circuits.empty()) return use_escs(series, "", true, data);
+    if (data.power_w.source.starts_with("ESC")) return;
+    const auto shortfall =
+        compare_with_escs(data.power_w, sum_over_devices(devices_of(series, "power_w", "ESC")).track);
+    if (!shortfall) return;
+    const auto supply = data.circuits.size() == 1 ? data.circuits.front().name : data.power_w.source;
+    const auto finding = fmt::format("the ESCs draw {:.0f} W on average, but {} gives {:.0f} W", shortfall->escs_w,
+                                     supply, shortfall->supply_w);
+    if (shortfall->is_other_supply)
+        return use_escs(series, finding + " and does not rise with them: it is not their supply", false, data);
+    data.power_w.notes.push_back(finding +
+                                 ": check the scales of both; the power is that of the latter, perhaps too small");
+}
+
 /// A column of power in a user's CSV goes before its batteries.
 void choose_electrical(const FlightSeries& series, FlightData& data) {
-    if (!has_plain_power(series)) {
-        if (auto batteries = select_batteries(series)) return choose_batteries(series, *std::move(batteries), data);
+    const bool is_plain = has_plain_power(series);
+    if (auto batteries = is_plain ? std::nullopt : select_batteries(series)) {
+        choose_batteries(series, *std::move(batteries), data);
+    } else {
+        data.power_w = select_power(series);
+        choose_voltage_and_current(series, data);
     }
-    data.power_w = select_power(series);
-    choose_voltage_and_current(series, data);
+    if (!is_plain) check_supply(series, data);
 }
 
 /// Those other than the chosen one, which may confirm or contradict it.

@@ -121,6 +121,7 @@ void list_matter(TomlFields& fields, FrontMatter& matter) {
     fields.optional_flag("lacks_log", series.log_is_missing);
     fields.optional_text("pack_serial", series.pack_serial);
     fields.optional_real("pack_cycles", series.pack_cycles);
+    fields.optional_real("motors", series.motors);
     if (fields.has("notes", !series.notes.empty())) fields.texts("notes", series.notes);
     const auto section = [&](std::string_view key, auto& entries, const auto& list) {
         if (fields.has(key, !entries.empty())) fields.table(key, entries, list, TomlLayout::section);

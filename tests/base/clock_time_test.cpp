@@ -18,13 +18,23 @@ TEST(ClockTime, ReadsTimesOfTheDayAndDates) {
     EXPECT_DOUBLE_EQ(seconds_of("2026/01/02 10:00:00"), 1767348000.0);
     EXPECT_DOUBLE_EQ(seconds_of("2026-01-02T10:00:00.25Z"), 1767348000.25);
     EXPECT_DOUBLE_EQ(seconds_of("2026-01-02T10:00:00+01:30"), 1767348000.0 - 5400.0);
+    EXPECT_DOUBLE_EQ(seconds_of("2026-01-02T10:00:00-0130"), 1767348000.0 + 5400.0);
+    EXPECT_DOUBLE_EQ(seconds_of("2026-01-02T10:00:00+02"), 1767348000.0 - 7200.0);
     EXPECT_FALSE(parse_clock_time("10:00:00")->has_date);
     EXPECT_FALSE(parse_clock_time("2026-01-02")->has_time);
 }
 
+TEST(ClockTime, ReadsTwelveHours) {
+    EXPECT_DOUBLE_EQ(seconds_of("12:00:01.5 AM"), 1.5);
+    EXPECT_DOUBLE_EQ(seconds_of("11:59:59am"), 43199.0);
+    EXPECT_DOUBLE_EQ(seconds_of("12:00:00 pm"), 43200.0);
+    EXPECT_DOUBLE_EQ(seconds_of("2026-01-02 1:00:00 PM"), 1767312000.0 + 46800.0);
+}
+
 TEST(ClockTime, ReadsNothingThatMayBeAnotherTime) {
-    for (const auto* text : {"", "10", "10:17", "01:05.5", "24:00:00", "10:60:00", "10:00:00 PM", "1/2/2026",
-                             "06/04/2018 22:29:00", "2026-02-30", "2026-01-02T", "2026-01-02 10:00:00 +1", "0m 0.1s"})
+    for (const auto* text :
+         {"", "10", "10:17", "01:05.5", "24:00:00", "10:60:00", "13:00:00 PM", "0:10:00 AM", "10:00:00 P", "1/2/2026",
+          "06/04/2018 22:29:00", "2026-02-30", "2026-01-02T", "2026-01-02 10:00:00 +1", "0m 0.1s"})
         EXPECT_FALSE(parse_clock_time(text)) << text;
 }
 

@@ -111,7 +111,7 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
     auto computed = test::series_of(flight(), "synthetic_7");
     computed.current_origin = flight::CurrentOrigin::throttle;
     EXPECT_EQ(rejected([&] { test::discharge_record(computed); }),
-              "synthetic_7: synthetic_7: its current was computed from throttle (MILLIAMP_AT_FULL_THROTTLE), "
+              "synthetic_7: synthetic_7: its current was computed from throttle, "
               "not measured; use flights with a current sensor");
     EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v.clear(); }), "f.data: synthetic_7: has no voltage" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }), "f.data: synthetic_7: has no current" + hint);

@@ -17,9 +17,9 @@ namespace flightwatt::test {
 /// The seeds (CRC_EXTRA) that MAVLink's documents state for messages.
 inline const std::map<std::uint32_t, std::uint8_t>& mavlink_seeds() {
     static const std::map<std::uint32_t, std::uint8_t> seeds{
-        {0, 50},   {1, 124},   {2, 137},   {22, 220},  {24, 24},   {30, 39},   {33, 104},  {42, 28},
-        {43, 132}, {44, 221},  {51, 196},  {73, 38},   {74, 20},   {147, 154}, {148, 178}, {164, 154},
-        {168, 1},  {230, 163}, {231, 105}, {242, 104}, {245, 130}, {251, 170}, {253, 83},  {291, 10}};
+        {0, 50},    {1, 124},   {2, 137},   {22, 220},  {24, 24},   {30, 39},   {33, 104},  {42, 28}, {43, 132},
+        {44, 221},  {51, 196},  {73, 38},   {74, 20},   {147, 154}, {148, 178}, {164, 154}, {168, 1}, {181, 174},
+        {230, 163}, {231, 105}, {242, 104}, {245, 130}, {251, 170}, {253, 83},  {291, 10}};
     return seeds;
 }
 
@@ -66,6 +66,11 @@ struct MavlinkSender {
             cells += little_endian(i < cells_mv.size() ? cells_mv[i] : std::uint16_t{65535});
         return packet(147, little_endian(consumed_mah) + little_endian(std::int32_t{-1}) + little_endian(temperature) +
                                cells + little_endian(current_ca) + static_cast<char>(id) + std::string(3, '\1'));
+    }
+
+    /// BATTERY2, the second battery of ArduPilot.
+    std::string battery2(std::uint16_t voltage_mv, std::int16_t current_ca) {
+        return packet(181, little_endian(voltage_mv) + little_endian(current_ca));
     }
 
     std::string position(double boot_s, double height_m) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <string>
@@ -136,19 +137,14 @@ std::string found_in_texts(const telemetry::LogFacts& facts, const char* pattern
     return "";
 }
 
-/// The kinds of the monitors by BATT_MONITOR, BATT2_MONITOR ...
-std::map<std::string, std::string> monitor_kinds(const std::map<std::string, double>& parameters) {
-    constexpr int escs = 9;
-    constexpr int sum = 10;
-    constexpr int max_monitors = 9;
-    std::map<std::string, std::string> kinds;
-    for (int number = 1; number <= max_monitors; ++number) {
-        const auto found = parameters.find(number == 1 ? "BATT_MONITOR" : fmt::format("BATT{}_MONITOR", number));
-        if (found == parameters.end()) continue;
-        if (found->second == escs) kinds[fmt::format("{}", number - 1)] = escs_monitor;
-        if (found->second == sum) kinds[fmt::format("{}", number - 1)] = sum_monitor;
-    }
-    return kinds;
+/// The number of motors by the frame; std::nullopt for helicopters and others.
+std::optional<double> motors_of(const std::map<std::string, double>& parameters) {
+    static const std::map<double, double> motors{{1, 4}, {2, 6}, {3, 8}, {4, 8}, {5, 6}, {7, 3}, {12, 12}, {14, 10}};
+    const auto quadplane = parameters.find("Q_ENABLE");
+    const bool is_quadplane = quadplane != parameters.end() && quadplane->second > 0.0;
+    const auto frame = parameters.find(is_quadplane ? "Q_FRAME_CLASS" : "FRAME_CLASS");
+    const auto found = frame == parameters.end() ? motors.end() : motors.find(frame->second);
+    return found == motors.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// The kind of vehicle by the number of its software; empty if no parameter states it.
@@ -167,7 +163,8 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
     if (vehicle.empty()) vehicle = vehicle_of_parameters(log.facts.parameters);
     series.aircraft_id = board_serial(log.facts);
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
-    series.monitor_kinds = monitor_kinds(log.facts.parameters);
+    add_monitor_kinds(log.facts.parameters, series);
+    series.motors = motors_of(log.facts.parameters);
     series.monitor_capacities_ah = monitor_capacities_ah(log.facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
     series.pack_serial = pack_serials(log.facts.parameters);
     const bool is_simulated =
@@ -186,6 +183,25 @@ std::string board_serial(const telemetry::LogFacts& facts) {
     auto serial = found_in_texts(facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
     std::ranges::replace(serial, ' ', '-');
     return serial;
+}
+
+void add_monitor_kinds(const std::map<std::string, double>& parameters, FlightSeries& series) {
+    static const std::map<double, std::string> kinds{
+        {9.0, escs_monitor},  {10.0, sum_monitor},  {11.0, fuel_monitor},     {12.0, fuel_monitor},
+        {18.0, fuel_monitor}, {24.0, fuel_monitor}, {25.0, throttle_monitor}, {27.0, fuel_monitor}};
+    constexpr int max_monitors = 9;
+    constexpr double voltage_only = 3.0;
+    bool is_measured = false;
+    bool is_computed = false;
+    for (int number = 1; number <= max_monitors; ++number) {
+        const auto found = parameters.find(number == 1 ? "BATT_MONITOR" : fmt::format("BATT{}_MONITOR", number));
+        if (found == parameters.end() || found->second == 0.0 || found->second == voltage_only) continue;
+        const auto kind = kinds.find(found->second);
+        if (kind != kinds.end()) series.monitor_kinds[fmt::format("{}", number - 1)] = kind->second;
+        is_computed = is_computed || (kind != kinds.end() && kind->second == throttle_monitor);
+        is_measured = is_measured || kind == kinds.end() || kind->second == escs_monitor;
+    }
+    if (is_computed && !is_measured) series.current_origin = CurrentOrigin::throttle;
 }
 
 std::string pack_serials(const std::map<std::string, double>& parameters) {

@@ -146,6 +146,7 @@ class MappedRows {
     /// A series for each recording.
     std::vector<FlightSeries> take() {
         if (rows_.time_s.size() < 2) refuse_times();
+        refuse_slow_clock();
         add_power();
         for (auto& [mapped, columns, values] : tracks_) {
             if (mapped->name == "power_w") require_positive(values, source_of(*mapped, columns));
@@ -260,6 +261,24 @@ class MappedRows {
                                                  : fmt::format("'{}' is no time: expected numbers, HH:MM:SS.mmm or "
                                                                "YYYY-MM-DD HH:MM:SS.mmm, all in one way",
                                                                first_bad_time_));
+    }
+
+    /// Numbers with which a flight lasts for days are in another unit.
+    void refuse_slow_clock() const {
+        constexpr double max_interval_s = 15.0;
+        constexpr double max_days = 4.0;
+        constexpr std::size_t enough_rows = 30;
+        constexpr double day_s = 24.0 * units::seconds_per_hour;
+        const double interval_s = median_interval_s(rows_.time_s);
+        const double days = interval_s * static_cast<double>(rows_.time_s.size()) / day_s;
+        if (clock_.is_clock() || rows_.time_s.size() < enough_rows ||
+            (interval_s <= max_interval_s && days <= max_days))
+            return;
+        throw InputError(
+            {file_},
+            fmt::format("the times of '{}' are {:.3g} s apart, for {:.3g} days: they are in a smaller unit", time_name_,
+                        interval_s, days),
+            "state it in the column map, in [time]: unit = \"ms\", \"us\" or \"ns\"");
     }
 
     const ColumnMap& map_;

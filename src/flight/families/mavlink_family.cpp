@@ -1,6 +1,7 @@
 #include "flight/families/mavlink_family.h"
 
 #include "base/number.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/families/ardupilot_family.h"
 #include "flight/families/derived_tracks.h"
@@ -71,6 +72,7 @@ std::vector<FamilyTrack> mavlink_tracks() {
     constexpr auto latest = Merge::latest;
     const FamilySource pack_current{"current_battery", "cA", nullptr, unknown};
     const FamilySource pack_voltage{"voltage_battery", "mV", nullptr, unknown_16_bit};
+    const FamilySource second_voltage{"voltage", "mV", nullptr, unknown_16_bit};
     auto cells_and_current = cell_voltages();
     cells_and_current.push_back(pack_current);
     const std::vector<FamilySource> wind{{"direction"}, {"speed"}};
@@ -89,6 +91,9 @@ std::vector<FamilyTrack> mavlink_tracks() {
         {"power_w", "SYS_STATUS", {pack_voltage, pack_current}, mean, product},
         {"voltage_v", "SYS_STATUS", {pack_voltage}},
         {"current_a", "SYS_STATUS", {pack_current}},
+        {"power_w", "BATTERY2", {second_voltage, pack_current}, mean, product, nullptr, nullptr, "1"},
+        {"voltage_v", "BATTERY2", {second_voltage}, mean, nullptr, nullptr, nullptr, "1"},
+        {"current_a", "BATTERY2", {pack_current}, mean, nullptr, nullptr, nullptr, "1"},
         {"altitude_m", "GLOBAL_POSITION_INT", {{"relative_alt", "mm"}}},
         {"altitude_m", "VFR_HUD", {{"alt", "m"}}},
         {"altitude_m", "GPS_RAW_INT", {{"alt", "mm"}}},
@@ -156,6 +161,7 @@ void describe_mavlink(const telemetry::AutopilotLog& log, FlightSeries& series) 
     series.monitor_capacities_ah = monitor_capacities_ah(facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
     series.monitor_capacities_ah.merge(
         monitor_capacities_ah(facts.parameters, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY"));
+    add_monitor_kinds(facts.parameters, series);
     series.pack_serial = pack_serials(facts.parameters);
     series.notes.insert(series.notes.end(), facts.notes.begin(), facts.notes.end());
 }
@@ -178,6 +184,43 @@ bool has_airspeed_sensor(const telemetry::MessageTable& status) {
         if ((both & differential_pressure) != 0) return true;
     }
     return false;
+}
+
+/// The sum of each row's cells if it has the ten that the message held before its extension; else NaN.
+std::vector<double> sums_of_ten_cells(const telemetry::MessageTable& battery) {
+    std::vector<double> sums(battery.time_s.size(), 0.0);
+    for (const auto& cell : cell_voltages()) {
+        const auto* column = battery.column(cell.field);
+        const bool is_expected = cell.absent == unknown_16_bit;
+        for (std::size_t row = 0; row < sums.size(); ++row) {
+            const double value = column == nullptr ? no_value : column->values[row];
+            const bool is_known = value > 0.0 && value != unknown_16_bit;
+            sums[row] += is_known != is_expected ? no_value : is_known ? value : 0.0;
+        }
+    }
+    return sums;
+}
+
+/// Completes the voltage of packs with more than ten cells of PX4, whose older versions leave out the others: each has
+/// the mean of the pack, and the status has the whole voltage.
+void complete_cells(telemetry::MessageTable& battery, const telemetry::MessageTable& status,
+                    std::vector<std::string>& notes) {
+    constexpr double stated_cells = cells;
+    const auto* voltage = status.column("voltage_battery");
+    if (voltage == nullptr) return;
+    auto packs_mv = voltage->values;
+    std::erase_if(packs_mv, [](double value) { return !(value > 0.0) || value == unknown_16_bit; });
+    const auto sums_mv = sums_of_ten_cells(battery);
+    auto known_mv = sums_mv;
+    std::erase_if(known_mv, [](double value) { return std::isnan(value); });
+    if (packs_mv.empty() || known_mv.empty()) return;
+    const double all_cells = std::round(stated_cells * median(std::move(packs_mv)) / median(std::move(known_mv)));
+    if (all_cells <= stated_cells) return;
+    for (auto& column : battery.columns)
+        for (std::size_t row = 0; column.field.starts_with("voltages[") && row < sums_mv.size(); ++row)
+            if (!std::isnan(sums_mv[row])) column.values[row] *= all_cells / stated_cells;
+    notes.push_back(fmt::format(
+        "BATTERY_STATUS has {} of {:.0f} cells by the voltage of SYS_STATUS: the others are added", cells, all_cells));
 }
 
 }  // namespace
@@ -204,7 +247,12 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
         std::erase_if(hud->columns, [](const telemetry::Column& column) { return column.field == "airspeed"; });
     const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
                              has_values(*battery, "current_battery", unknown);
-    if (has_battery && status != tables.end()) tables.erase(status);
+    if (has_battery && status != tables.end()) complete_cells(*battery, *status, log.facts.notes);
+    const auto* id = battery == tables.end() ? nullptr : battery->column("id");
+    const bool has_second = id != nullptr && std::ranges::find(id->values, 1.0) != id->values.end();
+    std::erase_if(tables, [&](const telemetry::MessageTable& table) {
+        return (has_battery && table.message == "SYS_STATUS") || (has_second && table.message == "BATTERY2");
+    });
     return log;
 }
 

@@ -46,6 +46,7 @@ struct Monitor {
     std::optional<double> stated_capacity_ah = {};  ///< see FlightInfo::monitor_capacities_ah
     std::string exclusion = {};                     ///< why it is not counted; empty if it is
 
+    bool has_current() const { return !power_w.empty() && !current_a.empty(); }
     std::string text() const { return fmt::format("{} ({:.2f} V, {:.2f} A)", name, mean_v, mean_a); }
 };
 
@@ -59,8 +60,8 @@ Track track_of(const FlightSeries& series, const Track& power, std::string_view 
     return found == series.tracks.end() ? Track{} : within_bounds(*found);
 }
 
-/// The monitors that measure a current, in the order of the log; empty without a number. Of messages without a number
-/// the first one counts.
+/// The monitors that state a voltage, in the order of the log; empty without a number. Of messages without a number the
+/// first one counts.
 std::vector<Monitor> monitors_of(const FlightSeries& series) {
     std::vector<Monitor> monitors;
     bool is_numbered = false;
@@ -79,18 +80,41 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
                         track_of(series, power, "charge_ah"),
                         track_of(series, power, "energy_wh"),
                         track_of(series, power, "battery_temperature_c")};
-        if (monitor.power_w.empty() || monitor.current_a.empty() || monitor.voltage_v.empty()) continue;
+        if (monitor.voltage_v.empty()) continue;
         const auto id = power.device.empty() ? std::string("0") : power.device;
         const auto kind = series.monitor_kinds.find(id);
         if (kind != series.monitor_kinds.end()) monitor.stated = kind->second;
         const auto capacity = series.monitor_capacities_ah.find(id);
         if (capacity != series.monitor_capacities_ah.end()) monitor.stated_capacity_ah = capacity->second;
-        monitor.mean_w = mean(monitor.power_w.value);
         monitor.mean_v = mean(monitor.voltage_v.value);
-        monitor.mean_a = mean(monitor.current_a.value);
+        if (monitor.has_current()) {
+            monitor.mean_w = mean(monitor.power_w.value);
+            monitor.mean_a = mean(monitor.current_a.value);
+        }
         monitors.push_back(std::move(monitor));
     }
     return is_numbered ? monitors : std::vector<Monitor>{};
+}
+
+/// Removes the monitors that measure fuel, or no current; notes are of the former, and of the latter at a voltage at
+/// which they may supply the motors.
+void remove_unmeasured(std::vector<Monitor>& monitors, std::vector<std::string>& notes) {
+    const auto is_fuel = [](const Monitor& monitor) { return monitor.stated == fuel_monitor; };
+    double largest_v = 0.0;
+    for (const auto& monitor : monitors) {
+        if (is_fuel(monitor))
+            notes.push_back(fmt::format("{} is not counted: it measures fuel, by its parameter", monitor.name));
+        else if (monitor.has_current())
+            largest_v = std::max(largest_v, monitor.mean_v);
+    }
+    for (const auto& monitor : monitors) {
+        if (is_fuel(monitor) || monitor.has_current()) continue;
+        if (largest_v > 0.0 && monitor.mean_v >= (1.0 - max_voltage_difference) * largest_v)
+            notes.push_back(fmt::format(
+                "{} states {:.1f} V but no current: if it is a pack of its own, what it supplies is not counted",
+                monitor.name, monitor.mean_v));
+    }
+    std::erase_if(monitors, [&](const Monitor& monitor) { return is_fuel(monitor) || !monitor.has_current(); });
 }
 
 /// Whether two tracks are within a part of each other at nearly all samples at which the second one is at least a tenth
@@ -245,6 +269,11 @@ void describe_choice(const std::vector<Monitor>& monitors, BatteryTracks& found)
                                  found.circuits.size() == 1 ? "batteries" : "batteries of circuits of their own",
                                  fmt::join(used, " and "));
     for (const auto& monitor : monitors)
+        if (monitor.exclusion.empty() && monitor.stated == throttle_monitor && used.size() > 1)
+            found.power_w.notes.push_back(fmt::format(
+                "the current of {} is computed from the throttle, by its parameter: the power is part guess",
+                monitor.name));
+    for (const auto& monitor : monitors)
         if (!monitor.exclusion.empty())
             found.power_w.notes.push_back(fmt::format("{} is not counted: {}; the power is that of {}", monitor.text(),
                                                       monitor.exclusion, fmt::join(used, " and ")));
@@ -253,10 +282,11 @@ void describe_choice(const std::vector<Monitor>& monitors, BatteryTracks& found)
 }  // namespace
 
 std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
+    BatteryTracks found;
     auto monitors = monitors_of(series);
+    remove_unmeasured(monitors, found.power_w.notes);
     if (monitors.empty()) return std::nullopt;
     exclude(monitors);
-    BatteryTracks found;
     std::vector<Device> powers;
     std::vector<const Monitor*> all;
     for (const auto& packs : packs_by_circuit(monitors)) {

@@ -131,7 +131,33 @@ bool take(const FlightSeries& series, const Track& candidate, ChosenTrack& power
     return false;
 }
 
+/// Chooses the sum of the devices that send `message`, or notes why not.
+bool take_devices(const FlightSeries& series, std::string_view message, ChosenTrack& power) {
+    auto devices = devices_of(series, "power_w", message);
+    const auto count = static_cast<double>(devices.size());
+    auto sum = sum_over_devices(std::move(devices));
+    if (!sum.ambiguity.empty()) power.not_chosen.push_back(std::move(sum.ambiguity));
+    if (sum.track.source.empty()) return false;
+    if (message == "ESC" && series.motors && count < *series.motors) {
+        power.not_chosen.push_back(
+            fmt::format("the telemetry of ESCs has the current of {} of {} motors: without the "
+                        "others their sum is too small",
+                        count, *series.motors));
+        return false;
+    }
+    if (!take(series, sum.track, power)) return false;
+    std::ranges::move(sum.notes, std::back_inserter(power.notes));
+    std::ranges::move(find_suspect_devices(series, message), std::back_inserter(power.notes));
+    return true;
+}
+
 }  // namespace
+
+ChosenTrack select_esc_power(const FlightSeries& series) {
+    ChosenTrack power;
+    take_devices(series, "ESC", power);
+    return power;
+}
 
 bool has_plain_power(const FlightSeries& series) { return find_plain(series, "power_w") != nullptr; }
 
@@ -174,14 +200,8 @@ ChosenTrack select_power(const FlightSeries& series) {
     const auto is_bat = [](const Track& track) { return track.source.starts_with("BAT."); };
     if (find_product(series, "BAT.") == nullptr && std::ranges::any_of(series.tracks, is_bat))
         power.not_chosen.emplace_back("BAT has no current");
-    for (const auto* message : device_messages) {
-        auto sum = sum_over_devices(devices_of(series, "power_w", message));
-        if (!sum.ambiguity.empty()) power.not_chosen.push_back(std::move(sum.ambiguity));
-        if (sum.track.source.empty() || !take(series, sum.track, power)) continue;
-        std::ranges::move(sum.notes, std::back_inserter(power.notes));
-        std::ranges::move(find_suspect_devices(series, message), std::back_inserter(power.notes));
-        return power;
-    }
+    for (const auto* message : device_messages)
+        if (take_devices(series, message, power)) return power;
     for (const auto* message : {"ENERGY", "ESC", "POWER_DEVICE"}) {
         const auto is_of = [&](const Track& track) {
             return track.source.substr(0, track.source.find('.')) == message;

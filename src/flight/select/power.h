@@ -18,6 +18,9 @@ bool has_plain_power(const FlightSeries& series);
 /// is 0 throughout, and one that voltage times current contradicts (another layout). Outliers are removed.
 ChosenTrack select_power(const FlightSeries& series);
 
+/// Selects the sum over the ESCs; empty without one, and where it lacks motors of the frame.
+ChosenTrack select_esc_power(const FlightSeries& series);
+
 /// Returns the times, rising, at which the message of `source` ("ENERGY.current"; a user's CSV has no message) has a
 /// power that is not its voltage times its current.
 std::vector<double> contradicted_times(const FlightSeries& series, std::string_view source);

@@ -65,6 +65,7 @@ constexpr std::array definitions{
                " middleware_custom_version, os_custom_version; + uint8_t[18] uid2"},
     Definition{164, "SIMSTATE", "float roll, pitch, yaw, xacc, yacc, zacc, xgyro, ygyro, zgyro; int32_t lat, lng"},
     Definition{168, "WIND", "float direction, speed, speed_z"},
+    Definition{181, "BATTERY2", "uint16_t voltage; int16_t current_battery"},
     Definition{230, "ESTIMATOR_STATUS",
                "uint64_t time_usec; float vel_ratio, pos_horiz_ratio, pos_vert_ratio, mag_ratio, hagl_ratio,"
                " tas_ratio, pos_horiz_accuracy, pos_vert_accuracy; uint16_t flags"},

@@ -255,6 +255,28 @@ TEST(LogFamily, SerialNumbersOfArduPilotAreThoseOfSmbusMonitors) {
     EXPECT_EQ(serial_of(8.0F, 3.0F), "") << "DroneCAN's battery_id is a place";
 }
 
+TEST(LogFamily, ParametersStateTheKindsOfMonitorsAndTheNumberOfMotors) {
+    const auto of = [](const std::map<std::string, float>& parameters) {
+        auto log = test::dataflash_log(20) + test::dataflash_format(9, "PARM", "QNf", "TimeUS,Name,Value", 28);
+        for (const auto& [name, value] : parameters)
+            log += test::dataflash_message(
+                9, test::little_endian(std::uint64_t{1}) + test::padded(name, 16) + test::little_endian(value));
+        return series_of(log);
+    };
+    using Kinds = std::map<std::string, std::string>;
+    const auto measured = of({{"BATT_MONITOR", 4.0F}, {"BATT2_MONITOR", 11.0F}, {"BATT3_MONITOR", 9.0F}});
+    EXPECT_EQ(measured.monitor_kinds, (Kinds{{"1", fuel_monitor}, {"2", escs_monitor}}));
+    EXPECT_EQ(measured.current_origin, CurrentOrigin::sensor);
+    const auto computed = of({{"BATT_MONITOR", 25.0F}, {"BATT2_MONITOR", 3.0F}, {"BATT3_MONITOR", 24.0F}});
+    EXPECT_EQ(computed.current_origin, CurrentOrigin::throttle);
+    EXPECT_EQ(of({{"BATT_MONITOR", 25.0F}, {"BATT2_MONITOR", 4.0F}}).current_origin, CurrentOrigin::sensor);
+    EXPECT_FALSE(computed.motors);
+    EXPECT_EQ(of({{"FRAME_CLASS", 2.0F}}).motors, 6.0);
+    EXPECT_EQ(of({{"FRAME_CLASS", 6.0F}}).motors, std::nullopt) << "a helicopter's servos are not counted";
+    const auto quadplane = of({{"Q_ENABLE", 1.0F}, {"Q_FRAME_CLASS", 3.0F}});
+    EXPECT_EQ(parse_series_csv(to_csv(quadplane), "x.csv").motors, 8.0);
+}
+
 TEST(LogFamily, OfAnotherAircraftIsRefused) {
     const FlightFile file(test::write_text(test::scratch_dir() / "x.ulg", test::ulog_log(5)));
     EXPECT_EQ(read_candidates(file, "0A1B").at(0).aircraft_id, "0A1B");

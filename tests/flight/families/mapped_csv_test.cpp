@@ -45,6 +45,20 @@ TEST(MappedCsv, SkipsLinesBeforeTheHeader) {
     EXPECT_THAT(series.tracks.at(0).value, ElementsAre(1.0, 2.0));
 }
 
+TEST(MappedCsv, RefusesNumbersWithWhichAFlightLastsForDays) {
+    const auto of = [](int rows, double interval) {
+        std::string csv = "t,h\n";
+        for (int i = 0; i < rows; ++i) csv += fmt::format("{},{}\n", 1.7e12 + interval * i, i);
+        return csv;
+    };
+    EXPECT_EQ(refusal(of(100, 100.0), altitude),
+              "f.csv: the times of 't' are 100 s apart, for 0.116 days: they are in a smaller unit; state it in the "
+              "column map, in [time]: unit = \"ms\", \"us\" or \"ns\"");
+    EXPECT_THAT(refusal(of(40'000, 10.0), altitude), HasSubstr("for 4.63 days"));
+    EXPECT_EQ(refusal(of(100, 10.0), altitude), "");
+    EXPECT_EQ(read(of(100, 100.0), altitude, "column = \"t\", unit = \"ms\"").tracks.at(0).time_s.size(), 100U);
+}
+
 TEST(MappedCsv, TakesTheUnitThatTheNameStates) {
     const auto value = [](const std::string& header, const std::string& more) {
         return read(header + "\n0,100\n1,100\n", altitude + more).tracks.at(0).value.at(0);

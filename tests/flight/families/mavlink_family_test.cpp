@@ -121,6 +121,53 @@ TEST(MavlinkFamily, ReadsTheCapacityOfThePack) {
     EXPECT_NEAR(series.monitor_capacities_ah.at("0"), 5.2, 1e-9);
 }
 
+std::int16_t rising_ca(int i) { return static_cast<std::int16_t>(1'000 + 10 * i); }
+
+TEST(MavlinkFamily, CountsAPackOnceThatTheEscsSeeToo) {
+    for (const float kind : {4.0F, 9.0F}) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            const auto escs_ca = static_cast<std::int16_t>(0.9 * rising_ca(i));
+            return std::vector{vehicle.battery({16'000}, rising_ca(i), 10 * i),
+                               vehicle.battery({16'000}, escs_ca, 9 * i, 1), vehicle.parameter("BATT_MONITOR", 4.0F),
+                               vehicle.parameter("BATT2_MONITOR", kind)};
+        });
+        EXPECT_NEAR(select_tracks(series).power_w.value.front(), kind == 9.0F ? 160.0 : 304.0, 1e-9);
+    }
+}
+
+TEST(MavlinkFamily, ReadsTheSecondBatteryOfItsOwnMessage) {
+    const auto first_w = [](bool has_status, bool has_second) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            const auto half_ca = static_cast<std::int16_t>(rising_ca(i) / 2);
+            std::vector packets{vehicle.status(16'000, rising_ca(i)), vehicle.battery2(16'000, half_ca)};
+            if (has_status) packets.push_back(vehicle.battery({16'000}, rising_ca(i), 10 * i));
+            if (has_second) packets.push_back(vehicle.battery({16'000}, half_ca, 5 * i, 1));
+            return packets;
+        });
+        return select_tracks(series).power_w.value.front();
+    };
+    EXPECT_NEAR(first_w(false, false), 240.0, 1e-9);
+    EXPECT_NEAR(first_w(true, false), 240.0, 1e-9);
+    EXPECT_NEAR(first_w(true, true), 240.0, 1e-9) << "not twice";
+}
+
+TEST(MavlinkFamily, CompletesThePackOfMoreThanTenCells) {
+    const auto voltage_v = [](std::size_t cells, std::uint16_t status_mv, std::size_t notes) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            return std::vector{vehicle.battery(std::vector<std::uint16_t>(cells, 4'000), 1'000, 10 * i),
+                               vehicle.status(status_mv, 1'000)};
+        });
+        EXPECT_EQ(series.notes.size(), notes);
+        return select_tracks(series).voltage_v.value.front();
+    };
+    EXPECT_NEAR(voltage_v(10, 48'100, 1), 48.0, 1e-9);
+    EXPECT_NEAR(voltage_v(10, 40'900, 0), 40.0, 1e-9) << "two sensors";
+    EXPECT_NEAR(voltage_v(6, 28'000, 0), 24.0, 1e-9) << "all of its cells";
+}
+
 TEST(MavlinkFamily, AsksWhichOfTwoVehiclesThatFlew) {
     const auto log = test::tlog_of_flight({1, 1}) + test::tlog_of_flight({2, 1});
     EXPECT_THAT(test::rejected([&] { load_flight(written(log)); }), HasSubstr("--aircraft"));

@@ -15,6 +15,7 @@ namespace flightwatt::flight {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -139,6 +140,37 @@ TEST(Circuits, NameASpareInput) {
     const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.019)}}));
     EXPECT_NEAR(data.power_w.value.at(0), 16.0, 1e-9);
     EXPECT_THAT(data.power_w.notes, Contains(HasSubstr("a spare input")));
+}
+
+TEST(Circuits, LeaveOutFuel) {
+    auto series = series_of({{"BAT", "0", 1.0, times(40.0)}, {"BAT", "1", 16.0, times(1.0)}});
+    series.monitor_kinds["0"] = fuel_monitor;
+    EXPECT_NEAR(first_w(series), 16.0, 1e-9);
+    EXPECT_THAT(select_tracks(series).power_w.notes, Contains(HasSubstr("BAT 0 is not counted: it measures fuel")));
+    series.monitor_kinds["1"] = fuel_monitor;
+    EXPECT_FALSE(select_batteries(series)) << "nothing electric";
+}
+
+TEST(Circuits, NameAPackWithoutACurrent) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 15.9, times(1.0)}});
+    const auto without_current = [](const Track& track) {
+        return track.device == "1" && (track.name == "power_w" || track.name == "current_a");
+    };
+    for (auto& track : series.tracks)
+        if (without_current(track)) track = {track.name, track.source, track.device};
+    EXPECT_NEAR(first_w(series), 16.0, 1e-9);
+    EXPECT_THAT(select_tracks(series).power_w.notes,
+                ElementsAre("BAT 1 states 15.9 V but no current: if it is a pack of its own, what it supplies is not "
+                            "counted"));
+    for (auto& track : series.tracks)
+        for (auto& value : track.value) value = track.device == "1" ? 5.0 : value;
+    EXPECT_THAT(select_tracks(series).power_w.notes, testing::IsEmpty()) << "a supply of electronics";
+}
+
+TEST(Circuits, NameACurrentThatIsComputed) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.5)}});
+    series.monitor_kinds["1"] = throttle_monitor;
+    EXPECT_THAT(select_tracks(series).power_w.notes, ElementsAre(HasSubstr("the current of BAT 1 is computed")));
 }
 
 TEST(Circuits, OfALogThatNumbersNoBatteryAreNone) {
