@@ -60,12 +60,13 @@ struct MavlinkSender {
 
     /// BATTERY_STATUS whose first cells have these voltages [mV], with its temperature in 0.01 degC.
     std::string battery(const std::vector<std::uint16_t>& cells_mv, std::int16_t current_ca, std::int32_t consumed_mah,
-                        std::uint8_t id = 0, std::int16_t temperature = 32767) {
+                        std::uint8_t id = 0, std::int16_t temperature = 32767, std::uint8_t function = 1) {
         std::string cells;
         for (std::size_t i = 0; i < 10; ++i)
             cells += little_endian(i < cells_mv.size() ? cells_mv[i] : std::uint16_t{65535});
         return packet(147, little_endian(consumed_mah) + little_endian(std::int32_t{-1}) + little_endian(temperature) +
-                               cells + little_endian(current_ca) + static_cast<char>(id) + std::string(3, '\1'));
+                               cells + little_endian(current_ca) + static_cast<char>(id) + static_cast<char>(function) +
+                               std::string(2, '\1'));
     }
 
     /// BATTERY2, the second battery of ArduPilot.

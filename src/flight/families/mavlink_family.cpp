@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -223,6 +224,53 @@ void complete_cells(telemetry::MessageTable& battery, const telemetry::MessageTa
         "BATTERY_STATUS has {} of {:.0f} cells by the voltage of SYS_STATUS: the others are added", cells, all_cells));
 }
 
+/// Keeps the rows of a message that count.
+template <typename Counts>
+void keep_rows(telemetry::MessageTable& table, const Counts& counts) {
+    telemetry::MessageTable kept{table.message, {}, table.columns, {}};
+    for (auto& column : kept.columns) column.values.clear();
+    for (std::size_t row = 0; row < table.time_s.size(); ++row) {
+        if (!counts(row)) continue;
+        kept.time_s.push_back(table.time_s[row]);
+        if (row < table.places.size()) kept.places.push_back(table.places[row]);
+        for (std::size_t k = 0; k < kept.columns.size(); ++k)
+            kept.columns[k].values.push_back(table.columns[k].values[row]);
+    }
+    table = std::move(kept);
+}
+
+/// Leaves out batteries that supply no motors, by their battery_function.
+void leave_out_other_batteries(telemetry::MessageTable& battery, std::vector<std::string>& notes) {
+    constexpr double avionics = 3.0;
+    constexpr double payload = 4.0;
+    const auto* id = battery.column("id");
+    const auto* function = battery.column("battery_function");
+    if (id == nullptr || function == nullptr) return;
+    std::map<double, std::string> others;
+    for (std::size_t row = 0; row < function->values.size(); ++row) {
+        const double value = function->values[row];
+        if (value == avionics || value == payload)
+            others[id->values[row]] = value == payload ? "a payload" : "the avionics";
+    }
+    for (const auto& [number, use] : others)
+        notes.push_back(
+            fmt::format("battery {:.0f} is not counted: it is that of {}, as BATTERY_STATUS states", number, use));
+    const auto is_counted = [&](std::size_t row) {
+        return function->values[row] != avionics && function->values[row] != payload;
+    };
+    if (!others.empty()) keep_rows(battery, is_counted);
+}
+
+/// Whether the status of the only battery continues where its own message has ended.
+bool outlasts(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
+    constexpr double ended_s = 10.0;
+    const auto* id = battery.column("id");
+    const bool is_one = id == nullptr || std::ranges::count(id->values, id->values.front()) ==
+                                             static_cast<std::ptrdiff_t>(id->values.size());
+    return is_one && has_values(status, "voltage_battery", unknown_16_bit) &&
+           has_values(status, "current_battery", unknown) && status.time_s.back() > battery.time_s.back() + ended_s;
+}
+
 }  // namespace
 
 const LogFamily& mavlink_family() {
@@ -231,6 +279,7 @@ const LogFamily& mavlink_family() {
         {{"BATTERY_STATUS", "id"}, {"GPS_RAW_INT", nullptr, "fix_type", min_fix}},
         describe_mavlink,
         {{"SYS_STATUS", {"onboard_control_sensors_enabled", "onboard_control_sensors_health"}},
+         {"BATTERY_STATUS", {"battery_function"}},
          {"HEARTBEAT", {"type", "autopilot"}}}};
     return family;
 }
@@ -245,13 +294,19 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     const auto hud = find("VFR_HUD");
     if (hud != tables.end() && (status == tables.end() || !has_airspeed_sensor(*status)))
         std::erase_if(hud->columns, [](const telemetry::Column& column) { return column.field == "airspeed"; });
+    if (battery != tables.end()) leave_out_other_batteries(*battery, log.facts.notes);
     const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
                              has_values(*battery, "current_battery", unknown);
     if (has_battery && status != tables.end()) complete_cells(*battery, *status, log.facts.notes);
     const auto* id = battery == tables.end() ? nullptr : battery->column("id");
     const bool has_second = id != nullptr && std::ranges::find(id->values, 1.0) != id->values.end();
+    const bool has_ended = has_battery && status != tables.end() && outlasts(*status, *battery);
+    if (has_ended)
+        log.facts.notes.push_back(fmt::format("BATTERY_STATUS ends {:.0f} s before SYS_STATUS, which is used",
+                                              status->time_s.back() - battery->time_s.back()));
     std::erase_if(tables, [&](const telemetry::MessageTable& table) {
-        return (has_battery && table.message == "SYS_STATUS") || (has_second && table.message == "BATTERY2");
+        return table.empty() || (has_battery && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS")) ||
+               (has_second && table.message == "BATTERY2");
     });
     return log;
 }

@@ -153,6 +153,40 @@ TEST(MavlinkFamily, ReadsTheSecondBatteryOfItsOwnMessage) {
     EXPECT_NEAR(first_w(true, true), 240.0, 1e-9) << "not twice";
 }
 
+TEST(MavlinkFamily, CountsNoBatteryOfAPayload) {
+    constexpr std::int16_t no_temperature = 32767;
+    const auto first_w = [](std::uint8_t function) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            return std::vector{vehicle.battery({16'000}, 1'000, 10 * i),
+                               vehicle.battery({12'000}, 300, 3 * i, 1, no_temperature, function)};
+        });
+        EXPECT_EQ(series.notes.size(), function >= 3 ? 1U : 0U);
+        return select_tracks(series).power_w.value.front();
+    };
+    EXPECT_NEAR(first_w(2), 196.0, 1e-9);
+    EXPECT_NEAR(first_w(3), 160.0, 1e-9);
+    EXPECT_NEAR(first_w(4), 160.0, 1e-9);
+}
+
+TEST(MavlinkFamily, TakesTheStatusOfThePackWhereThatOfThePayloadIsTheOnlyOther) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int i) {
+        return std::vector{vehicle.status(16'000, 1'000), vehicle.battery({12'000}, 300, 3 * i, 0, 32767, 4)};
+    });
+    EXPECT_NEAR(select_tracks(series).power_w.value.front(), 160.0, 1e-9);
+}
+
+TEST(MavlinkFamily, TakesTheStatusThatContinuesWhereTheBatteryHasEnded) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int i) {
+        std::vector packets{vehicle.status(16'000, rising_ca(i))};
+        if (i < 60) packets.push_back(vehicle.battery({16'000}, rising_ca(i), 10 * i));
+        return packets;
+    });
+    EXPECT_NEAR(select_tracks(series).power_w.time_s.back(), 119.0, 1.0);
+}
+
 TEST(MavlinkFamily, CompletesThePackOfMoreThanTenCells) {
     const auto voltage_v = [](std::size_t cells, std::uint16_t status_mv, std::size_t notes) {
         test::MavlinkSender vehicle;
