@@ -49,7 +49,8 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
     return {
         field("plan", &R::plan, "its file"),
         field("fits", &R::fit, "yes, perhaps or no"),
-        field("reason", &R::reason, "why it cannot be flown, or its probability is unknown; empty otherwise"),
+        field("reason", &R::reason,
+              "why it cannot be flown, its probability is unknown, or a part is not flown; empty otherwise"),
         field("probability", &R::probability, "of keeping the reserve; null: unknown"),
         field("probability_interval_95", &R::probability_95, "in new flights"),
         field("probability_required", &R::probability_required, "by --probability"),
@@ -59,6 +60,7 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
         field("flown", &R::flown, "the flight as modelled"),
         field("legs", &R::legs, "in the order of the flight"),
         field("remedies", &R::remedies, "what would help; empty where it fits"),
+        field("missing", &R::missing, "movements of the plan that are not flown, and why: it is perhaps at most"),
         field("chosen", &R::chosen, "what the plan leaves open"),
         field("notes", &R::notes, "limits of the answer")};
 }
@@ -133,9 +135,10 @@ std::string answer_line(const PlanCheck& check) {
     if (!check.probability)
         return fmt::format("{}, {} the reserve of {} as modelled; {}", start,
                            check.flown.keeps_reserve ? "keeps" : "misses", reserve, check.reason);
-    return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required)",
+    return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required){}",
                        start, reserve, percent_text(*check.probability), percent_text(check.probability_95.low),
-                       percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0));
+                       percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0),
+                       check.missing.empty() ? "" : ", without a part of the plan that is not flown");
 }
 
 std::string remedy_text(const answer::PlanRemedy& remedy) {
@@ -167,7 +170,10 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
              ""});
     for (const auto& remedy : check.remedies)
         lines.push_back({&remedy == &check.remedies.front() ? "Helps" : "", remedy_text(remedy), ""});
-    if (check.fit != PlanFit::yes && check.remedies.empty() && check.probability)
+    for (const auto& text : check.missing)
+        lines.push_back({&text == &check.missing.front() ? "Not flown" : "", text, ""});
+    const bool is_enough = check.flown.keeps_reserve && check.probability >= check.probability_required;
+    if (check.fit != PlanFit::yes && check.remedies.empty() && check.probability && !is_enough)
         lines.push_back({"Helps", "nothing that was tried: another airspeed, a part of the path, a larger pack", ""});
     if (!check.chosen.empty()) lines.push_back({"Chosen", fmt::format("{}", fmt::join(check.chosen, "; ")), ""});
     text += lines_text(lines, columns);
@@ -220,8 +226,9 @@ int flightwatt::stages::check_stage(int argc, char** argv) {
         R"(Answers whether an aircraft flies a plan on its pack: yes, perhaps or no, with the probability of keeping the
 reserve, as drawn flights show it; how long, how far, with what energy; the charge leg by leg, with the way from home and
 back; where it fails; and what would help, each simulated: another airspeed, other lines over an area, a part of the
-path, a larger pack, less payload. Plans are .plan, .waypoints, flight plans of Paparazzi (--block), KML, GeoJSON and CSV,
-as of new-mission --plan. Without --model and --battery it takes those of an answer, in flightwatt-out.
+path, a larger pack, less payload. With a movement of the plan that is not flown it is perhaps at most. Plans are .plan,
+.waypoints, flight plans of Paparazzi (--block), KML, GeoJSON and CSV, as of new-mission --plan. Without --model and
+--battery it takes those of an answer, in flightwatt-out.
 
 Exit code 0: every plan fits; 5: one does not, or perhaps; 3: one cannot be read.)"};
     stage.examples = {"flightwatt check survey.plan --model model.toml --battery pack.toml --wind 6@250",

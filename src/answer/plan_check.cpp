@@ -43,14 +43,17 @@ class PlanFlight {
   public:
     explicit PlanFlight(const PlanQuestion& question) : question_(question) {}
 
-    mission::MissionVariant mission(const Change& change = {}, std::vector<std::string>* chosen = nullptr) const {
+    mission::MissionVariant mission(const Change& change = {}, PlanCheck* check = nullptr) const {
         auto fresh = question_.aircraft;
         auto plan = question_.plan;
         if (change.airspeed_m_per_s) plan.airspeed_m_per_s = change.airspeed_m_per_s;
         if (change.heading_deg) plan.heading_deg = change.heading_deg;
         if (change.payload_kg) fresh.payload_kg = change.payload_kg;
         fly_plan(plan, fresh.mechanical, fresh);
-        if (chosen != nullptr) *chosen = fresh.flown->chosen;
+        if (check != nullptr) {
+            check->chosen = fresh.flown->chosen;
+            check->missing = fresh.flown->missing;
+        }
         const auto file = plan.file.filename().string() + ".toml";  // in the working folder, and never written
         try {
             return mission::parse_mission(new_mission_toml(fresh), file, change.reading);
@@ -76,6 +79,16 @@ class PlanFlight {
 
     bool suffices(const Flown& flown) const {
         return flown.summary().keeps_reserve && flown.probability.value_or(1.0) >= question_.probability;
+    }
+
+    /// Whether the flight with a value suffices; one that cannot be flown does not.
+    template <typename With>
+    bool suffices(const With& with, double value) const {
+        try {
+            return suffices(with(value));
+        } catch (const InputError&) {
+            return false;
+        }
     }
 
   private:
@@ -202,7 +215,7 @@ class Remedies {
         constexpr int halvings = 8;
         for (int i = 0; i < halvings; ++i) {
             const double middle = std::midpoint(low, high);
-            (flight_.suffices(with(middle)) ? low : high) = middle;
+            (flight_.suffices(with, middle) ? low : high) = middle;
         }
         return low;
     }
@@ -234,7 +247,7 @@ class Remedies {
         const double payload_kg = question_.aircraft.payload_kg.value_or(0.0);
         if (!(payload_kg > 0.0)) return;
         const auto with = [&](double kg) { return flight_.fly(Change{.payload_kg = kg}); };
-        if (const auto none = with(0.0); !flight_.suffices(none)) return add("payload", 0.0, "no payload", none);
+        if (!flight_.suffices(with, 0.0)) return add("payload", 0.0, "no payload", with(0.0));
         constexpr double steps_per_kg = 1000.0;
         const double kg = std::floor(greatest(0.0, payload_kg, with) * steps_per_kg) / steps_per_kg;
         add("payload", kg, fmt::format("a payload of {:.3g} kg instead of {:.3g} kg", kg, payload_kg), with(kg));
@@ -248,7 +261,7 @@ class Remedies {
 /// Flies the plan in its wind; without a result where the wind alone forbids it, with the reason.
 std::optional<Flown> fly_in_wind(const PlanFlight& flight, const PlanQuestion& question, PlanCheck& check) {
     try {
-        return flight.fly(flight.mission({}, &check.chosen));
+        return flight.fly(flight.mission({}, &check));
     } catch (const InputError& error) {
         if (!question.aircraft.wind) throw;
         auto calm = question;
@@ -277,13 +290,14 @@ PlanCheck check_plan(const PlanQuestion& question) {
         add_legs(*flown, check);
         find_failure(*flown, check);
         const bool is_known = flown->probability.has_value();
-        if (!check.flown.keeps_reserve)
-            check.fit = PlanFit::no;
-        else
-            check.fit = is_known && flight.suffices(*flown) ? PlanFit::yes : PlanFit::perhaps;
-        if (!is_known) check.reason = "nothing shows how the power of flights differs: their probability is unknown";
+        const bool is_sure = is_known && check.missing.empty() && flight.suffices(*flown);
+        check.fit = is_sure ? PlanFit::yes : check.flown.keeps_reserve ? PlanFit::perhaps : PlanFit::no;
+        if (!is_known)
+            check.reason = "nothing shows how the power of flights differs: their probability is unknown";
+        else if (!check.missing.empty())
+            check.reason = "a part of the plan is not flown: " + check.missing.front();
     }
-    if (check.fit != PlanFit::yes && (check.probability || !check.flown.keeps_reserve))
+    if (!flown || (!flight.suffices(*flown) && (check.probability || !check.flown.keeps_reserve)))
         Remedies(flight, question, check).add_all(flown);
     return check;
 }

@@ -15,7 +15,7 @@ namespace flightwatt::answer {
 /// Whether a plan fits a battery.
 enum class PlanFit {
     yes,      ///< it keeps the reserve with the probability that is asked for
-    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one
+    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one, or without a movement
     no        ///< it misses it as modelled, or cannot be flown in the wind
 };
 
@@ -66,6 +66,7 @@ struct PlanCheck {
     std::optional<double> fails_at_s;  ///< since lift-off
     std::vector<PlanLeg> legs;
     std::vector<PlanRemedy> remedies;  ///< where the answer is not yes
+    std::vector<std::string> missing;  ///< movements of the plan that are not flown: it is perhaps at most
     std::vector<std::string> chosen;   ///< what the plan leaves open
     std::vector<std::string> notes;    ///< of the mission
 };

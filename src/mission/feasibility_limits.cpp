@@ -20,6 +20,9 @@
 namespace flightwatt::mission {
 namespace {
 
+/// Surplus of a value with which a leg, or the way back, cannot be flown: as if the battery ended.
+constexpr double too_far_percent = -100.0;
+
 /// Simulated final state of charge minus the reserve [points]. Negative if the reserve is not kept, the more so the
 /// earlier the battery ends.
 double surplus_percent(const Mission& mission) {
@@ -62,7 +65,7 @@ class LimitSearch {
                 return true;
             }
             if (percent) good_ = value;
-            low_ = value;
+            if (percent || misfit_percent_ > 0.0) low_ = value;
         }
         return false;
     }
@@ -256,8 +259,6 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
     if (!(length_m > 0.0))
         throw NoResultError(
             "the path has no legs along which to return: holds, and ways to a place with duration_s, are not legs");
-    // A leg may be infeasible on the way back, and with it all that follow.
-    constexpr double too_far_percent = -100.0;
     LimitSearch search(with_return_after_m, probability, too_far_percent);
     if (search.surplus(length_m).value_or(too_far_percent) >= 0.0) return search.limit(length_m, length_m);
     search.set_end(length_m);
@@ -270,12 +271,13 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
 
 FeasibilityLimit most_path_times(const MissionVariation& with_path_times, const std::optional<double>& probability) {
     constexpr double max_times_tried = 1000.0;
-    LimitSearch search(with_path_times, probability);
+    LimitSearch search(with_path_times, probability, too_far_percent);
     search.require_end(max_times_tried, "flown {:.0f} times, the path still lands with the reserve");
     search.refine();
     if (!search.good())
         throw NoResultError("from nowhere along the path does the mission land with its reserve" + search.share_text());
-    return search.limit(*search.good(), *search.good() * (1.0 + 1e-9));
+    const double beyond = *search.good() * (1.0 + 1e-9);
+    return search.limit(*search.good(), search.fits(beyond) ? beyond : *search.good());
 }
 
 std::string describe_path_times(const MissionSetup& mission, double times) {

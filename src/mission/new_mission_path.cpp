@@ -11,6 +11,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -90,6 +91,9 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     const bool of_blocks = has_blocks(text);
     const auto start = plan.home ? start_key(*plan.home, of_blocks ? text : "", file.string()) : "";
     if (is_area_text(text)) {
+        if (!of_blocks && has(text, "<LineString"))
+            throw InputError({file.string()}, "has a path (LineString) and an area (Polygon)",
+                             "save the one that is to be flown in a file of its own");
         auto path = path_of_area(text, plan, airspeed_m_per_s, is_rotorcraft);
         if (plan.home) path.keys.push_back(start);
         return path;
@@ -103,14 +107,19 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(plan.name))}, {}};
     if (plan.home) path.keys.push_back(start);
     if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
+    path::PlanEntries entries;
     try {
-        path.speed = read(std::nullopt).speed;
+        entries = read(std::nullopt);
     } catch (const InputError&) {  // it may leave a radius to the autopilot
         const double radius_m = turn_radius_m(airspeed_m_per_s);
-        read(radius_m);
+        entries = read(radius_m);
         path.keys.push_back(fmt::format("radius_m = {}", radius_m));
         path.chosen.push_back(fmt::format("radius_m = {}, for circles with a bank of {} degrees", radius_m, bank_deg));
     }
+    for (const auto& entry : entries.entries)
+        if (entry.airspeed_m_per_s) path.own_m_per_s.insert(*entry.airspeed_m_per_s);
+    path.speed = std::move(entries.speed);
+    path.missing = std::move(entries.missing);
     return path;
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct NewPath {
     std::vector<std::string> keys;    ///< lines of TOML, beyond the airspeed
     std::vector<std::string> chosen;  ///< what the plan leaves open: "heading_deg = 40, for the fewest turns"
     std::optional<path::PlannedSpeed> speed = {};
+    std::set<double> own_m_per_s = {};      ///< airspeeds that its movements state
+    std::vector<std::string> missing = {};  ///< as path::PlanEntries::missing
 };
 
 /// What a new mission flies: a plan of QGroundControl or ArduPilot, waypoints, blocks of Paparazzi's flight plan, or an

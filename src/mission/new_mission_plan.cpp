@@ -2,21 +2,41 @@
 
 #include "base/error.h"
 
+#include <set>
+#include <string>
+
 #include <fmt/format.h>
 
 namespace flightwatt::mission {
 namespace {
 
+/// "12 to 16 m/s".
+std::string range_text(const std::set<double>& speeds) {
+    const double low = *speeds.begin();
+    const double high = *speeds.rbegin();
+    return low == high ? fmt::format("{} m/s", low) : fmt::format("{} to {} m/s", low, high);
+}
+
 /// Chooses the airspeed of a new path.
 void choose_airspeed(const PlanToFly& plan, NewMission& fresh) {
     const auto& planned = fresh.flown->speed;
+    const auto& own = fresh.flown->own_m_per_s;
     fresh.airspeed_m_per_s = plan.airspeed_m_per_s;
-    if (fresh.airspeed_m_per_s) return;
+    if (fresh.airspeed_m_per_s) {
+        if (own.empty()) return;
+        fresh.flown->keys.emplace_back("one_airspeed = true");
+        fresh.flown->chosen.push_back(fmt::format("one_airspeed = true: {} m/s instead of the plan's {}",
+                                                  *fresh.airspeed_m_per_s, range_text(own)));
+        return;
+    }
     const auto& [low, high] = fresh.model.physical->airspeed_m_per_s;
     const bool is_flown = planned && planned->m_per_s >= low && planned->m_per_s <= high;
     const auto flown =
         fmt::format("airspeed_m_per_s = {:.1f}, as the model's flights", new_airspeed_m_per_s(fresh.model));
     auto& chosen = fresh.flown->chosen;
+    if (!own.empty())
+        chosen.push_back(
+            fmt::format("the plan changes its airspeed to {}; --airspeed states one for all of it", range_text(own)));
     if (!planned) {
         chosen.push_back(flown);
     } else if (planned->is_default && !is_flown) {

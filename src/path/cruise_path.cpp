@@ -96,6 +96,7 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
             row.length_m = units::rad_from_turns(circles->turns) * circles->radius_m;
         }
         if (element.is_turn) row.kind = "turn";
+        if (hold != nullptr && hold->hovers) row.airspeed_m_per_s = plan.wind.speed_m_per_s;
         start_s += row.duration_s;
         row.load_factor = 0.0;
         elements.push_back(std::move(row));

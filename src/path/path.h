@@ -32,10 +32,11 @@ struct Circles {
     double start_course_deg = 0.0;  ///< course at the start
 };
 
-/// A straight flight for a time, without a course over ground.
+/// A straight flight for a time, without a course over ground, or a hover.
 struct Hold {
     double time_s = 0.0;
     std::optional<Leg> over_ground = std::nullopt;  ///< the leg, if its time was measured
+    bool hovers = false;                            ///< it keeps its place: its airspeed is that of the wind
 };
 
 /// A part of a path, flown with one airspeed.

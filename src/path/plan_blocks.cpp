@@ -45,8 +45,8 @@ std::size_t block_number(const FlightPlan& plan, const std::string& name) {
                          (procedures.empty() ? "" : "; blocks of " + short_list(procedures) + " are not read"));
 }
 
-/// Over the ground; no rate or altitude is needed for it.
-FlightPath path_over_ground(const PlanEntries& plan) {
+/// Over the ground; no rate or altitude is needed for it. Adds what leaves the plan's fence to the remarks.
+FlightPath path_over_ground(const PlanEntries& plan, std::vector<std::string>& remarks) {
     auto entries = plan.entries;
     entries.emplace_back().hold_s = 1.0;  // without it a single position is no path
     PathDefaults defaults;
@@ -54,7 +54,10 @@ FlightPath path_over_ground(const PlanEntries& plan) {
     defaults.altitude_m = 0.0;
     defaults.rates = {1.0, 1.0};
     defaults.starts_at_first_place = plan.starts_at_first_place;
-    return build_path(entries, defaults);
+    auto path = build_path(entries, defaults);
+    if (const auto origin = path_origin(entries, defaults))
+        for (auto& note : fence_notes(plan.fence, path, *origin)) remarks.push_back(std::move(note));
+    return path;
 }
 
 /// The block with what its entries fly; an InputError of `read` becomes the reason why it is not flown.
@@ -67,7 +70,7 @@ PlanBlock summarised(PlanBlock block, const Read& read) {
         if (plan.entries.empty()) return block;
         double circles = 0.0;
         std::size_t legs = 0, holds = 0;
-        for (const auto& element : path_over_ground(plan).elements) {
+        for (const auto& element : path_over_ground(plan, block.not_flown).elements) {
             if (const auto* circle = std::get_if<Circles>(&element.shape)) {
                 circles += circle->turns;
                 block.length_m += 2.0 * std::numbers::pi * circle->radius_m * circle->turns;
@@ -101,8 +104,8 @@ std::vector<PlanBlock> flight_plan_blocks(std::string_view text, const std::stri
     for (const auto& node : plan.root.child("blocks").children("block")) {
         all.push_back(summarised({attribute(node, "name"), where(plan, node).line}, [&] {
             BlockState state;
-            auto not_flown = read_block(plan, node, settings, state);
-            return PlanEntries{std::move(state.entries), std::move(not_flown), true};
+            auto not_flown = read_block(plan, node, settings, state).all;
+            return PlanEntries{std::move(state.entries), std::move(not_flown), {}, true};
         }));
     }
     for (const auto& procedure : included_procedures(plan))
@@ -139,7 +142,9 @@ PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, co
     for (const auto& name : blocks) {
         const auto block = *std::next(nodes.begin(), static_cast<std::ptrdiff_t>(block_number(plan, name)));
         const auto before = state.entries.size();
-        const auto remarks = fmt::format("{}", fmt::join(read_block(plan, block, settings, state), "; "));
+        const auto not_flown = read_block(plan, block, settings, state);
+        const auto remarks = fmt::format("{}", fmt::join(not_flown.all, "; "));
+        for (const auto& text : not_flown.missing) result.missing.push_back(fmt::format("block '{}': {}", name, text));
         if (state.entries.size() == before)
             throw InputError(where(plan, block), fmt::format("block '{}' has no movement that can be flown", name),
                              remarks.empty() ? "name other blocks" : remarks);

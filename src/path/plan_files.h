@@ -1,6 +1,7 @@
 #pragma once
 
 #include "path/path_entries.h"
+#include "path/plan_fence.h"
 
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@ struct AutopilotSettings {
     /// Airspeed for circles that end after a time; 0: the plan's own, without which they are flown once.
     double airspeed_m_per_s = 0.0;
     bool is_rotorcraft = false;  ///< of plans that name no kind of vehicle
+    bool one_airspeed = false;   ///< the plan's changes of the airspeed are not flown
 };
 
 /// The airspeed that a plan states for all legs without one of their own.
@@ -27,8 +29,10 @@ struct PlannedSpeed {
 struct PlanEntries {
     std::vector<PathEntry> entries;
     std::vector<std::string> not_flown = {};  ///< "line 80: the circle around STDBY has no end: it is flown once"
+    std::vector<std::string> missing = {};    ///< those of `not_flown` that leave out a movement, of unknown energy
     bool starts_at_first_place = false;       ///< see PathDefaults
     std::optional<PlannedSpeed> speed = {};
+    PlanFence fence = {};
 };
 
 /// A block of a flight plan, read alone; or the whole mission of a plan in another format.

@@ -58,6 +58,10 @@ class PathFlight {
 
   private:
     double airspeed() const { return element_->airspeed_m_per_s; }
+    double airspeed(double climb_m_per_s) const {
+        const auto* hold = std::get_if<Hold>(&element_->shape);
+        return hold != nullptr && hold->hovers ? std::hypot(wind_.speed_m_per_s, climb_m_per_s) : airspeed();
+    }
     double sign() const { return element_->altitude_change_m < 0.0 ? -1.0 : 1.0; }
     double height_m() const { return std::abs(element_->altitude_change_m); }
 
@@ -71,7 +75,7 @@ class PathFlight {
 
     void add(double time_s, double climb_m_per_s, double load_factor = 1.0) {
         if (!(time_s > 0.0)) return;
-        flown_.pieces.push_back({time_s, {airspeed(), climb_m_per_s, load_factor}, index_});
+        flown_.pieces.push_back({time_s, {airspeed(climb_m_per_s), climb_m_per_s, load_factor}, index_});
         flown_.duration_s += time_s;
     }
 

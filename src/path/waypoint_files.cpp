@@ -230,6 +230,7 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
     const auto found = kml_places(coordinates, file);
     if (found.places.empty()) throw InputError({file}, "has no waypoints", hint);
     if (found.has_altitudes) plan.not_flown.emplace_back("the altitudes of KML are not flown: the path is level");
+    if (!found.is_level) plan.missing.push_back(plan.not_flown.back());
     for (const auto& place : found.places) {
         auto& entry = plan.entries.emplace_back();
         entry.name = fmt::format("waypoint {}", plan.entries.size());
@@ -239,7 +240,9 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
     return plan;
 }
 
-PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings) {
+namespace {
+
+PlanEntries read_any_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings) {
     auto ending = path.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto text = read_file(path);
@@ -254,6 +257,15 @@ PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSet
         default:
             return {parse_waypoint_csv(text, path.string())};
     }
+}
+
+}  // namespace
+
+PlanEntries read_waypoints(const std::filesystem::path& path, const AutopilotSettings& settings) {
+    auto plan = read_any_waypoints(path, settings);
+    if (settings.one_airspeed)
+        for (auto& entry : plan.entries) entry.airspeed_m_per_s.reset();
+    return plan;
 }
 
 }  // namespace flightwatt::path

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Contains;
 using testing::Each;
+using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
 
@@ -107,6 +108,66 @@ TEST(PlanCheck, IsNoInAWindThatForbidsIt) {
     const auto check = check_plan(question);
     EXPECT_EQ(check.fit, PlanFit::no);
     EXPECT_THAT(check.reason, HasSubstr("the wind of 30 m/s"));
+}
+
+/// Two waypoints of QGroundControl and one more item.
+PlanCheck check_with(const std::string& command_and_parameters) {
+    const auto file = test::scratch_dir() / "items.plan";
+    const auto item = [](const std::string& text) {
+        return fmt::format(R"({{"type": "SimpleItem", "frame": 3, {}}})", text);
+    };
+    test::write_text(file, fmt::format(R"({{"fileType": "Plan", "version": 1, "mission": {{"version": 2,
+"plannedHomePosition": [43.46, 1.27, 100], "items": [{}, {}, {}]}}}})",
+                                       item(R"("command": 16, "params": [0, 0, 0, null, 43.47, 1.27, 60])"),
+                                       item(R"("command": 16, "params": [0, 0, 0, null, 43.47, 1.28, 60])"),
+                                       item(command_and_parameters)));
+    return check_plan(question_of(file));
+}
+
+TEST(PlanCheck, IsPerhapsAtMostWhereAMovementIsNotFlown) {
+    const auto endless = check_with(R"("command": 177, "params": [1, -1, 0, 0, 0, 0, 0])");
+    EXPECT_EQ(endless.fit, PlanFit::perhaps);
+    EXPECT_GE(endless.probability.value(), 0.95);
+    EXPECT_THAT(endless.missing, ElementsAre("item 3: the jump to item 1 is not flown: it has no end"));
+    EXPECT_THAT(endless.reason, HasSubstr("the jump to item 1"));
+    EXPECT_TRUE(endless.remedies.empty()) << "what is flown fits";
+    const auto once = check_with(R"("command": 177, "params": [1, 1, 0, 0, 0, 0, 0])");
+    EXPECT_EQ(once.fit, PlanFit::yes);
+    EXPECT_GT(once.length_m, 1.5 * endless.length_m);
+    EXPECT_EQ(check_with(R"("command": 177, "params": [1, 500, 0, 0, 0, 0, 0])").fit, PlanFit::no);
+}
+
+TEST(PlanCheck, FliesOneAirspeedInsteadOfThePlansChanges) {
+    const auto file = test::scratch_dir() / "speeds.csv";
+    test::write_text(file, "east_m,north_m,airspeed_m_per_s\n0,0,\n0,24000,16\n200,24000,16\n200,0,16\n");
+    auto question = question_of(file);
+    const auto planned = check_plan(question);
+    EXPECT_THAT(planned.chosen, Contains(HasSubstr("changes its airspeed to 16 m/s; --airspeed states one")));
+    const auto slower = std::ranges::find(planned.remedies, "airspeed", &PlanRemedy::kind);
+    ASSERT_NE(slower, planned.remedies.end());
+    question.plan.airspeed_m_per_s = 12.0;
+    const auto slow = check_plan(question);
+    EXPECT_THAT(slow.chosen, Contains("one_airspeed = true: 12 m/s instead of the plan's 16 m/s"));
+    EXPECT_GT(slow.flown.duration_s, 1.2 * planned.flown.duration_s);
+}
+
+/// Over its start, a part of the path ends at a height from which the way back is too steep.
+TEST(PlanCheck, AnswersWhereAPartOfThePathCannotBeFlown) {
+    const auto file = test::scratch_dir() / "over.csv";
+    test::write_text(file, "east_m,north_m,altitude_m\n0,0,20\n0,20000,300\n0,0,300\n0,-20000,300\n0,0,20\n");
+    const auto check = check_plan(question_of(file));
+    EXPECT_EQ(check.fit, PlanFit::no);
+    EXPECT_THAT(check.remedies, Contains(Field(&PlanRemedy::kind, "pack")));
+}
+
+TEST(PlanCheck, RefusesAPathAndAnAreaInOneFile) {
+    const auto file = test::scratch_dir() / "both.kml";
+    test::write_text(file, R"(<?xml version="1.0"?><kml><Placemark><LineString><coordinates>1.27,43.46 1.27,43.50
+</coordinates></LineString></Placemark><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>1.27,43.46
+1.274,43.46 1.274,43.463 1.27,43.463 1.27,43.46</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>
+</kml>)");
+    EXPECT_THAT(test::rejected([&] { check_plan(question_of(file)); }),
+                HasSubstr("has a path (LineString) and an area (Polygon); save the one"));
 }
 
 TEST(PlanCheck, CountsTheWayFromHomeAndBack) {

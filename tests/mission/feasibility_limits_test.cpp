@@ -163,6 +163,15 @@ TEST(PathLimits, FindHowOftenThePathFits) {
     EXPECT_EQ(reach_unit_of(path_mission({{path_element(Leg{600.0, 0.0}), turn}}).setup), ReachUnit::path_times);
 }
 
+TEST(PathLimits, StopBeforeAPartThatCannotBeFlown) {
+    const FlightPath path{{path_element(Leg{9000.0, 0.0})}};
+    const auto most = most_path_times([&](double times) {
+        if (times > 0.2 && times < 0.6) throw InputError({}, "the way back is too steep");
+        return with_reserve(path_mission(repeated(path, {}, times)), 80.0);
+    });
+    EXPECT_NEAR(most.value, 0.2, 1e-6);
+}
+
 /// Out across the wind, and then with a wind that forbids that way back.
 TEST(PathLimits, StopWhereTheWindForbidsTheWayBack) {
     const FlightPath path{{path_element(Leg{600.0, 90.0}), path_element(Leg{600.0, 0.0})}};

@@ -49,6 +49,15 @@ TEST(PlanBlocks, FlyRoutesAndPaths) {
     EXPECT_EQ(entries[3].altitude_m, std::optional(225.0));
 }
 
+TEST(PlanBlocks, NameTheMovementsThatAreMissing) {
+    const auto missing_of = [](const char* stages) { return read(std::string(R"(<go wp="1"/>)") + stages).missing; };
+    EXPECT_EQ(missing_of(R"(<circle wp="1" radius="80"/>)").size(), 1U) << "without an end";
+    EXPECT_EQ(missing_of(R"(<for var="i" from="1" to="3"><go wp="2"/></for>)"),
+              std::vector<std::string>{"block 'Test': not followed: loops (for)"});
+    EXPECT_TRUE(missing_of(R"(<while cond="!ready"/>)").empty());
+    EXPECT_TRUE(missing_of(R"(<survey_rectangle grid="50" wp1="S1" wp2="S3"/>)").empty()) << "once covers the area";
+}
+
 TEST(PlanBlocks, FlyPatternsWithTheLengthsOfTheirGeometry) {
     EXPECT_NEAR(length_m(R"(<circle wp="1" radius="80" until="NavCircleCount() @GT 2.5"/>)"), 400.0 * pi, 1e-6);
     EXPECT_NEAR(length_m(R"(<circle wp="1" radius="nav_radius" until="stage_time>100"/>)"), 1200.0, 1e-6);

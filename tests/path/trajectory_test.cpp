@@ -185,6 +185,21 @@ TEST(Trajectory, ClimbsAtARateComeFirst) {
     EXPECT_NEAR(climbed_m(holding), 60.0, 1e-9);
 }
 
+TEST(Trajectory, HoversWithTheSpeedOfTheWind) {
+    Hold hover{100.0};
+    hover.hovers = true;
+    const auto airspeed_in = [&](const Wind& wind) {
+        return compute_trajectory({{element_of(hover)}}, wind).pieces.front().motion.airspeed_m_per_s;
+    };
+    EXPECT_EQ(airspeed_in({}), 0.0);
+    EXPECT_EQ(airspeed_in({8.0, 120.0}), 8.0);
+    const auto climb = compute_trajectory({{climbing(element_of(hover), 60.0, 3.0)}}, {4.0, 0.0});
+    ASSERT_EQ(climb.pieces.size(), 2U);
+    EXPECT_DOUBLE_EQ(climb.pieces[0].motion.airspeed_m_per_s, 5.0) << "4 m/s across, 3 m/s up";
+    EXPECT_DOUBLE_EQ(climb.pieces[1].motion.airspeed_m_per_s, 4.0);
+    EXPECT_EQ(compute_trajectory({{element_of(Hold{100.0})}}, {}).pieces.front().motion.airspeed_m_per_s, 13.0);
+}
+
 TEST(Trajectory, RefusesWhatCannotBeFlown) {
     const auto refusal = [](const PathElement& element, const Wind& wind = {}) {
         return test::rejected([&] { compute_trajectory({{element}}, wind); });

@@ -268,8 +268,9 @@ void require_one_file(const TomlTable& path) {
             throw InputError(path.where(file), fmt::format("{} and {} are two paths", named, file), "give one");
         named = file;
     }
-    constexpr std::array<std::pair<const char*, const char*>, 8> keys{{{"blocks", "flight_plan"},
+    constexpr std::array<std::pair<const char*, const char*>, 9> keys{{{"blocks", "flight_plan"},
                                                                        {"waypoint_order", "flight_plan"},
+                                                                       {"one_airspeed", "waypoints"},
                                                                        {"radius_m", "flight_plan or waypoints"},
                                                                        {"spacing_m", "area"},
                                                                        {"heading_deg", "area"},
@@ -286,7 +287,9 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
                                MissionSetup& mission) {
     const path::AutopilotSettings settings{
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"),
-        defaults.airspeed_m_per_s, is_rotorcraft};
+        defaults.airspeed_m_per_s, is_rotorcraft, path.optional_boolean("one_airspeed").value_or(false)};
+    if (settings.one_airspeed && !path.has("airspeed_m_per_s"))
+        throw InputError(path.where("one_airspeed"), "one_airspeed needs airspeed_m_per_s", "add it");
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
         const auto file = named_file(path, "area");
@@ -317,7 +320,7 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
 }
 
 /// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
-std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
+path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
     const bool is_rotorcraft = mission.mechanical && mission.mechanical->is_rotorcraft;
     auto plan = read_planned(path, is_rotorcraft, defaults, mission);
     if (!path.has("airspeed_m_per_s") && plan.speed) {
@@ -336,7 +339,7 @@ std::vector<path::PathEntry> read_entries(const TomlTable& path, path::PathDefau
     for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
     if (entries.empty())
         throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints, flight_plan or area");
-    return std::move(entries);
+    return plan;
 }
 
 /// Notes the keys that the path replaces.
@@ -410,19 +413,27 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
 /// The path as it is drawn, and where it is.
 path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
-    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",    "climb_m_per_s", "descent_m_per_s", "start",
-                              "return_to_start",  "waypoints",     "flight_plan",   "waypoint_order",  "blocks",
-                              "radius_m",         "area",          "spacing_m",     "heading_deg",     "leg",
-                              "max_bank_deg",     "turn_radius_m", "strip",         "swath_m",         "utility"});
+    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",   "climb_m_per_s", "descent_m_per_s", "start",
+                              "return_to_start",  "waypoints",    "flight_plan",   "waypoint_order",  "blocks",
+                              "radius_m",         "area",         "spacing_m",     "heading_deg",     "leg",
+                              "max_bank_deg",     "one_airspeed", "turn_radius_m", "strip",           "swath_m",
+                              "utility"});
     require_one_file(table);
     if (table.has("area")) mission.survey = SurveyCoverage{read_layout(table, reading)};
     auto defaults = read_defaults(table, mission);
-    auto entries = read_entries(table, defaults, mission);
+    auto planned = read_entries(table, defaults, mission);
+    auto& entries = planned.entries;
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
     path::PlannedPath plan;
     plan.path = build_path(entries, defaults);
     plan.origin = path_origin(entries, defaults);
+    if (plan.origin)
+        for (const auto& note : fence_notes(planned.fence, plan.path, *plan.origin))
+            mission.notes.push_back("path: " + note);
+    if (mission.mechanical && mission.mechanical->is_rotorcraft)
+        for (auto& element : plan.path.elements)
+            if (auto* hold = std::get_if<path::Hold>(&element.shape)) hold->hovers = !hold->over_ground;
     if (packs) mission.packs->home = read_home(*packs, entries, defaults);
     if (reading.return_after_m) plan.path = out_and_back(plan.path, *reading.return_after_m, defaults.rates);
     return plan;

@@ -38,7 +38,7 @@ class BlockReader {
         values_.try_emplace("DEFAULT_CIRCLE_RADIUS", *settings.radius_m);
     }
 
-    std::vector<std::string> read(const pugi::xml_node& block) {
+    BlockRemarks read(const pugi::xml_node& block) {
         constexpr std::size_t max_entries = 200'000;
         for (const auto& stage : block.children()) {
             read_stage(stage);
@@ -47,7 +47,11 @@ class BlockReader {
                                  fmt::format("the blocks have more than {} movements", max_entries),
                                  "name fewer blocks");
         }
-        if (!not_followed_.empty()) remarks_.push_back(fmt::format("not followed: {}", fmt::join(not_followed_, ", ")));
+        const auto add = [](const std::set<std::string>& parts, std::vector<std::string>& to) {
+            if (!parts.empty()) to.push_back(fmt::format("not followed: {}", fmt::join(parts, ", ")));
+        };
+        add(not_followed_, remarks_.all);
+        add(missing_, remarks_.missing);
         return std::move(remarks_);
     }
 
@@ -64,7 +68,7 @@ class BlockReader {
         if (kind == "set") return set(stage);
         if (kind == "call" || kind == "call_once") return call(stage);
         if (kind == "while" || kind == "for")
-            not_followed_.insert(fmt::format("loops ({})", kind));
+            leave_out(fmt::format("loops ({})", kind), !stage.children().empty());
         else if (kind == "exception")
             not_followed_.insert(fmt::format("exceptions to '{}'", attribute(stage, "deroute")));
         else if (kind == "deroute")
@@ -73,8 +77,14 @@ class BlockReader {
             report(stage, fmt::format("<{}> is not flown: it states no place", kind));
     }
 
-    void report(const pugi::xml_node& stage, const std::string& text) {
-        remarks_.push_back(fmt::format("line {}: {}", where(plan_, stage).line, text));
+    void report(const pugi::xml_node& stage, const std::string& text, bool is_missing = true) {
+        remarks_.all.push_back(fmt::format("line {}: {}", where(plan_, stage).line, text));
+        if (is_missing) remarks_.missing.push_back(remarks_.all.back());
+    }
+
+    void leave_out(const std::string& part, bool moves) {
+        not_followed_.insert(part);
+        if (moves) missing_.insert(part);
     }
 
     std::optional<double> value_of(const std::string& expression) const {
@@ -146,9 +156,11 @@ class BlockReader {
         if (count) require_in(at_most(largest_circle_count), *count, "the number of rounds", where(plan_, stage));
         constexpr double min_count = 0.1;
         if (count) return std::max(*count, min_count);
-        report(stage, until.empty() || until == "FALSE"
-                          ? fmt::format("{} has no end: it is flown once", pattern)
-                          : fmt::format("{} ends by a condition ({}): it is flown once", pattern, until));
+        report(stage,
+               until.empty() || until == "FALSE"
+                   ? fmt::format("{} has no end: it is flown once", pattern)
+                   : fmt::format("{} ends by a condition ({}): it is flown once", pattern, until),
+               pattern != "the survey");  // once covers the area
         return 1.0;
     }
 
@@ -255,9 +267,9 @@ class BlockReader {
         const std::string_view function = name;
         if (function.starts_with("NavSetWaypoint") || function.starts_with("NavCopyWaypoint") ||
             function.starts_with("nav_compute_"))
-            not_followed_.insert("moves of waypoints by " + attribute(stage, "fun"));
+            leave_out("moves of waypoints by " + attribute(stage, "fun"), true);
         else if (!is_without_movement(function))
-            not_followed_.insert("the unknown function " + name);
+            leave_out("the unknown function " + name, true);
     }
 
     void line(const pugi::xml_node& stage, const Arguments& arguments) {
@@ -329,14 +341,15 @@ class BlockReader {
     const AutopilotSettings& settings_;
     std::map<std::string, double>& values_;
     std::vector<PathEntry>& entries_;
-    std::vector<std::string> remarks_;
+    BlockRemarks remarks_;
     std::set<std::string> not_followed_;
+    std::set<std::string> missing_;  ///< those of them that may move the aircraft
 };
 
 }  // namespace
 
-std::vector<std::string> read_block(const FlightPlan& plan, const pugi::xml_node& block,
-                                    const AutopilotSettings& settings, BlockState& state) {
+BlockRemarks read_block(const FlightPlan& plan, const pugi::xml_node& block, const AutopilotSettings& settings,
+                        BlockState& state) {
     return BlockReader(plan, settings, state).read(block);
 }
 

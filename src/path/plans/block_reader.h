@@ -14,9 +14,15 @@ struct BlockState {
     std::map<std::string, double> values;  ///< settings, and values set by the stages
 };
 
+/// What of a block is not flown.
+struct BlockRemarks {
+    std::vector<std::string> all;      ///< as PlanEntries::not_flown
+    std::vector<std::string> missing;  ///< as PlanEntries::missing
+};
+
 /// Appends the movements of a block to the entries, and returns texts about the parts that are not flown. Throws
 /// InputError, placed at the stage, for one that cannot be read.
-std::vector<std::string> read_block(const FlightPlan& plan, const pugi::xml_node& block,
-                                    const AutopilotSettings& settings, BlockState& state);
+BlockRemarks read_block(const FlightPlan& plan, const pugi::xml_node& block, const AutopilotSettings& settings,
+                        BlockState& state);
 
 }  // namespace flightwatt::path

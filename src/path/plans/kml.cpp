@@ -6,6 +6,7 @@
 #include "path/plans/plan_expressions.h"
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@ pugi::xml_document load_kml(std::string_view text, const std::string& file, cons
 
 KmlPlaces kml_places(const pugi::xpath_node_set& coordinates, const std::string& file) {
     KmlPlaces found;
+    std::optional<double> first_m;
     for (const auto& node : coordinates)
         for (const auto& place : split(node.node().text().get(), " \t\r\n")) {
             const auto parts = split(place, ",");
@@ -29,7 +31,10 @@ KmlPlaces kml_places(const pugi::xpath_node_set& coordinates, const std::string&
                 throw InputError({file}, fmt::format("a place '{}'", truncated(place)),
                                  "expected longitude,latitude in degrees");
             found.places.push_back({*latitude, *longitude});
-            if (parts.size() > 2 && parse_number(parts[2]) != 0.0) found.has_altitudes = true;
+            const double altitude_m = parts.size() > 2 ? parse_number(parts[2]).value_or(0.0) : 0.0;
+            if (altitude_m != 0.0) found.has_altitudes = true;
+            if (altitude_m != first_m.value_or(altitude_m)) found.is_level = false;
+            if (!first_m) first_m = altitude_m;
         }
     return found;
 }

@@ -14,6 +14,7 @@ namespace flightwatt::path {
 struct KmlPlaces {
     std::vector<GeodeticPosition> places;
     bool has_altitudes = false;  ///< any that is not 0
+    bool is_level = true;        ///< all are the same
 };
 
 /// Parses a file as XML. Throws InputError with the hint.

@@ -11,7 +11,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,6 +27,7 @@ struct MissionItem {
     std::array<double, 7> parameters = {};
     std::string name;
     Location where;
+    double number = -1.0;  ///< by which jumps name it, 0 or more
 };
 
 struct MissionItems {
@@ -32,7 +35,17 @@ struct MissionItems {
     std::vector<MissionItem> items;
     Location where;
     std::optional<PlannedSpeed> speed = {};
+    bool jumps_count_again = true;  ///< a jump that is reached again after its last repetition: not of PX4
 };
+
+/// Returns whether a command that is not known moves the aircraft: those for navigation, and few others.
+bool is_movement(int command) {
+    constexpr int last_for_navigation = 94;
+    constexpr int region_of_interest = 80;
+    constexpr std::array others{0, 113, 192, 213, 252, 601, 42702, 42703};  // 0: an item without commands
+    return std::ranges::count(others, command) > 0 ||
+           (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
+}
 
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
@@ -55,7 +68,9 @@ class ItemReader {
         if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
     }
 
-    void read(const MissionItem& item) {
+    /// Reads an item, flown for the `round`th time.
+    void read(const MissionItem& item, std::size_t round) {
+        round_ = round;
         const auto& parameters = item.parameters;
         switch (item.command) {
             case nav_spline:
@@ -69,7 +84,7 @@ class ItemReader {
             case nav_vtol_takeoff:
                 return take_off(item);
             case nav_loiter_unlimited:
-                report(item, "the circle has no end: it is flown once");
+                report_missing(item, "the circle has no end: it is flown once");
                 return circle(item, 1.0, false);
             case nav_loiter_turns:
                 return circle(item, parameters[0], false);
@@ -89,12 +104,22 @@ class ItemReader {
             case vtol_transition:
                 if (parameters[0] == 3.0) report(item, "what follows the transition to hover is flown as on the wing");
                 return;
-            case jump:
-                return report(item, fmt::format("the jump to item {:.0f} is not flown", parameters[0]));
-            default:
-                report(item, item.command == 0 ? "not flown" : fmt::format("command {} is not flown", item.command));
+            default: {
+                const auto text =
+                    item.command == 0 ? std::string("not flown") : fmt::format("command {} is not flown", item.command);
+                is_movement(item.command) ? report_missing(item, text) : report(item, text);
+            }
         }
     }
+
+    /// Adds a text to what is not flown; the same text of several items is added once, with their number.
+    void report(const MissionItem& item, const std::string& text, bool is_missing = false) {
+        auto& items = reports_.try_emplace(text, ReportedItems{item.name, {}, is_missing}).first->second;
+        items.names.insert(item.name);
+    }
+
+    /// Adds a movement that is not flown.
+    void report_missing(const MissionItem& item, const std::string& text) { report(item, text, true); }
 
     PlanEntries finish(const Location& where) {
         if (home_ && !entries_.empty() && !takes_off_) {  // a plan without a take-off is flown from home, too
@@ -103,25 +128,22 @@ class ItemReader {
             entries_.front().where = where;
             entries_.front().geographic = home_;
         }
-        PlanEntries plan{std::move(entries_), {}, true, speed_};
-        for (const auto& [text, items] : reports_)
-            plan.not_flown.push_back(fmt::format(
-                "{}{}: {}", items.first, items.count == 1 ? "" : fmt::format(" and {} more", items.count - 1), text));
+        PlanEntries plan{std::move(entries_), {}, {}, true, speed_};
+        for (const auto& [text, items] : reports_) {
+            const auto more = items.names.size() - 1;
+            plan.not_flown.push_back(
+                fmt::format("{}{}: {}", items.first, more == 0 ? "" : fmt::format(" and {} more", more), text));
+            if (items.is_missing) plan.missing.push_back(plan.not_flown.back());
+        }
         if (!plan.entries.empty()) return plan;
         throw InputError(where, "no item of the mission can be flown",
                          plan.not_flown.empty() ? "it has no items" : plan.not_flown.front());
     }
 
   private:
-    /// Adds a text to what is not flown; the same text of several items is added once, with their number.
-    void report(const MissionItem& item, const std::string& text) {
-        auto& items = reports_.try_emplace(text, ReportedItems{item.name, 0}).first->second;
-        ++items.count;
-    }
-
     PathEntry entry_of(const MissionItem& item) const {
         PathEntry entry;
-        entry.name = item.name;
+        entry.name = round_ == 1 ? item.name : fmt::format("{}, round {}", item.name, round_);
         entry.where = item.where;
         entry.airspeed_m_per_s = airspeed_m_per_s_;
         entry.geographic = place_at(item.parameters[4], item.parameters[5], item.name, item.where);
@@ -150,7 +172,7 @@ class ItemReader {
     void fly_to(const MissionItem& item, double hold_s) {
         auto entry = entry_at_altitude(item);
         if (hold_s > 0.0) entry.hold_s = hold_s;
-        if (!entry.geographic && !entry.hold_s) return report(item, "there is no place: not flown");
+        if (!entry.geographic && !entry.hold_s) return report_missing(item, "there is no place: not flown");
         entries_.push_back(entry);
     }
 
@@ -159,7 +181,7 @@ class ItemReader {
     }
 
     void hold(const MissionItem& item, double time_s) {
-        if (!(time_s > 0.0)) return report(item, "the delay has no time: not flown");
+        if (!(time_s > 0.0)) return report_missing(item, "the delay has no time: not flown");
         entries_.push_back(entry_of(item));
         entries_.back().geographic.reset();
         entries_.back().hold_s = time_s;
@@ -169,7 +191,8 @@ class ItemReader {
     void take_off(const MissionItem& item) {
         auto entry = entry_at_altitude(item);
         if (!entry.geographic) entry.geographic = home_;
-        if (!entries_.empty() || !entry.geographic) return report(item, "the take-off is not flown");
+        if (!entries_.empty()) return report_missing(item, "the take-off is not flown");
+        if (!entry.geographic) return report(item, "the take-off is not flown");
         entries_.push_back(entry);
         takes_off_ = true;
     }
@@ -184,11 +207,8 @@ class ItemReader {
     void circle(const MissionItem& item, double amount, bool is_time) {
         const double stated_m = item.parameters[2];
         const bool is_stated = std::isfinite(stated_m) && std::abs(stated_m) >= min_radius_m;
-        if (!is_stated && !settings_.radius_m) {
-            report(item, "the circle has no radius: only the way there is flown; radius_m in [path] states it");
-            return fly_to(item, is_time ? amount : 0.0);
-        }
-        const double radius_m = is_stated ? stated_m : *settings_.radius_m;
+        if (!is_stated && is_time && settings_.is_rotorcraft) return fly_to(item, amount);
+        const double radius_m = is_stated ? stated_m : settings_.radius_m.value_or(assumed_radius_m(item));
         const double planned =
             settings_.airspeed_m_per_s > 0.0 || !speed_ ? settings_.airspeed_m_per_s : speed_->m_per_s;
         const double airspeed = airspeed_m_per_s_.value_or(planned);
@@ -200,7 +220,20 @@ class ItemReader {
         entries_.push_back(with_circles(entry_at_altitude(item), turns, radius_m));
     }
 
+    /// What the autopilots have where nothing was set: NAV_LOITER_RAD of PX4 (ArduPlane's WP_LOITER_RAD is 60 m), and
+    /// CIRCLE_RADIUS of ArduCopter.
+    double assumed_radius_m(const MissionItem& item) {
+        constexpr double wing_m = 80.0, rotorcraft_m = 10.0;
+        const double radius_m = settings_.is_rotorcraft ? rotorcraft_m : wing_m;
+        if (!settings_.radius_m)
+            report(item, fmt::format("the circle has no radius: {:.0f} m are assumed, of {}; radius_m in [path] states "
+                                     "another",
+                                     radius_m, settings_.is_rotorcraft ? "ArduCopter" : "PX4"));
+        return radius_m;
+    }
+
     void set_speed(const MissionItem& item) {
+        if (settings_.one_airspeed) return;
         const double kind = item.parameters[0];  // SPEED_TYPE: 0 airspeed, 1 ground speed, as multirotors have it
         const double speed = item.parameters[1];
         if (!(kind == 0.0 || kind == 1.0) || !(speed > 0.0 && speed <= max_m_per_s))
@@ -211,7 +244,8 @@ class ItemReader {
 
     struct ReportedItems {
         std::string first;
-        std::size_t count = 0;
+        std::set<std::string> names;
+        bool is_missing = false;
     };
 
     const AutopilotSettings& settings_;
@@ -219,15 +253,68 @@ class ItemReader {
     std::optional<PlannedSpeed> speed_;
     double home_altitude_m_ = 0.0;
     bool takes_off_ = false;  ///< an item states where
+    std::size_t round_ = 1;   ///< of the item
     std::optional<double> airspeed_m_per_s_;
     std::vector<PathEntry> entries_;
     std::map<std::string, ReportedItems> reports_;
 };
 
+/// The items in the order of the flight: as often as jumps repeat them.
+class MissionFlight {
+  public:
+    explicit MissionFlight(const MissionItems& mission)
+        : mission_(mission), rounds_(mission.items.size()), taken_(mission.items.size()) {}
+
+    PlanEntries fly(const AutopilotSettings& settings) {
+        ItemReader reader(mission_, settings);
+        std::size_t repeated = 0;
+        for (std::size_t i = 0; i < mission_.items.size();) {
+            const auto& item = mission_.items[i];
+            if (++rounds_[i] > 1 && ++repeated > max_repeated_items)
+                throw InputError(item.where,
+                                 fmt::format("{}: its jumps repeat more than {} items", item.name, max_repeated_items),
+                                 "state fewer repetitions: no battery lasts as long");
+            if (item.command == jump) {
+                i = next_of_jump(i, reader);
+            } else {
+                reader.read(item, rounds_[i]);
+                ++i;
+            }
+        }
+        return reader.finish(mission_.where);
+    }
+
+  private:
+    static constexpr std::size_t max_repeated_items = 2'000;
+
+    std::size_t next_of_jump(std::size_t i, ItemReader& reader) {
+        const auto& item = mission_.items[i];
+        const double to = item.parameters[0];
+        const double times = item.parameters[1];
+        const auto target = std::ranges::find(mission_.items, to, &MissionItem::number);
+        if (target == mission_.items.end() || !(to >= 0.0) || !(times >= 0.0)) {
+            reader.report_missing(item, fmt::format("the jump to item {:.0f} is not flown: {}", to,
+                                                    times < 0.0 ? "it has no end" : "there is no such item"));
+            return i + 1;
+        }
+        if (taken_[i] < std::floor(times)) {
+            taken_[i] += 1.0;
+            return static_cast<std::size_t>(target - mission_.items.begin());
+        }
+        if (mission_.jumps_count_again && std::exchange(taken_[i], 0.0) > 0.0 && rounds_[i] > times + 1.0)
+            reader.report(item,
+                          "the jump is repeated in each round of another, as ArduPilot does from 4.7 on; earlier "
+                          "versions and PX4 repeat it once");
+        return i + 1;
+    }
+
+    const MissionItems& mission_;
+    std::vector<std::size_t> rounds_;  ///< of each item so far
+    std::vector<double> taken_;        ///< how often each jump was followed
+};
+
 PlanEntries fly_items(const MissionItems& mission, const AutopilotSettings& settings) {
-    ItemReader reader(mission, settings);
-    for (const auto& item : mission.items) reader.read(item);
-    return reader.finish(mission.where);
+    return MissionFlight(mission).fly(settings);
 }
 
 /// Reads the objects of a .plan. Its own checks throw InputError; a key that is missing, or of another type, is the
@@ -249,7 +336,10 @@ class QgcReader {
             require_version(mission, 2, 2, name_);
             copy_numbers(mission, "plannedHomePosition", mission_.home);
             read_speed(mission);
+            constexpr int px4 = 12;  // MAV_AUTOPILOT
+            mission_.jumps_count_again = mission.value("firmwareType", Json()) != px4;
             read_items(mission.at("items"), "item", false);
+            number_items();
         } catch (const Json::exception& error) {  // "[json.exception.type_error.302] type must be array"
             const std::string text = error.what();
             refuse(fmt::format("{}: {}", name_, text.substr(text.find(']') + 2)));
@@ -324,18 +414,45 @@ class QgcReader {
         item.command = integer("command");
         item.frame = integer("frame");
         copy_numbers(json, "params", item.parameters);
+        if (const auto id = json.value("doJumpId", Json()); id.is_number()) item.number = id.get<double>();
         mission_.items.push_back(std::move(item));
     }
 
-    /// Surveys and corridors carry the items that they consist of.
+    /// By their doJumpId, or from 1 on where none has one or two have the same.
+    void number_items() {
+        auto& items = mission_.items;
+        std::set<double> numbers;
+        bool are_different = true;
+        for (const auto& item : items)
+            if (item.number >= 0.0) are_different = numbers.insert(item.number).second && are_different;
+        if (are_different && !numbers.empty()) return;
+        for (std::size_t i = 0; i < items.size(); ++i) items[i].number = static_cast<double>(i + 1);
+    }
+
+    /// Surveys and corridors carry the items that they consist of, landing patterns two places.
     void read_complex(const Json& json) {
         name_ += fmt::format(" ({})", json.at("complexItemType").get<std::string>());
         constexpr int max_version = 5;  // of QGroundControl 4
         require_version(json, 1, max_version, name_);
         if (json.contains("TransectStyleComplexItem"))
             read_items(json["TransectStyleComplexItem"].at("Items"), name_ + ", item", true);
+        else if (json.contains("landCoordinate") && json.contains("landingApproachCoordinate"))
+            read_landing(json);
         else
             mission_.items.push_back({0, 0, {}, name_, mission_.where});
+    }
+
+    /// The circles in which it descends, then the place where it lands.
+    void read_landing(const Json& json) {
+        const int frame = json.value("altitudesAreRelative", true) ? 3 : 0;
+        const int approach = json.value("useLoiterToAlt", true) ? nav_loiter_to_altitude : nav_waypoint;
+        for (const auto& [key, command] :
+             {std::pair{"landingApproachCoordinate", approach}, std::pair{"landCoordinate", int{nav_land}}}) {
+            std::array<double, 3> place{};
+            copy_numbers(json, key, place);
+            mission_.items.push_back(
+                {command, frame, {0.0, 0.0, 0.0, 0.0, place[0], place[1], place[2]}, name_, mission_.where});
+        }
     }
 
     bool is_rotorcraft_;
@@ -366,7 +483,7 @@ PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const
     QgcReader reader(file, settings.is_rotorcraft);
     const auto json = parse_json(text, file, "expected a plan of QGroundControl");
     auto plan = fly_items(reader.read(json), settings);
-    for (auto& note : fence_notes(json, plan.entries)) plan.not_flown.push_back(std::move(note));
+    plan.fence = read_fence(json);
     return plan;
 }
 
@@ -374,11 +491,15 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
     std::istringstream lines{std::string(text)};
     std::string line;
     std::getline(lines, line);
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     constexpr std::string_view version = "QGC WPL 110";
-    if (!line.starts_with(version))
+    const bool is_without_home = line.starts_with("QGC WPL 120");
+    if (!line.starts_with(version) && !is_without_home)
         throw InputError({file, 1}, fmt::format("begins with '{}'", truncated(line)),
                          fmt::format("expected \"{}\"", version));
     MissionItems mission;
+    if (is_without_home) mission.where = {file, 1};
     for (std::size_t number = 2; std::getline(lines, line); ++number) {
         const auto values = item_numbers(line, {file, number});
         if (values.empty()) continue;
@@ -391,7 +512,8 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
                          static_cast<int>(std::clamp(values[2], -1.0, 1e6)),
                          {},
                          fmt::format("item {} (line {})", values[0], number),
-                         {file, number}};
+                         {file, number},
+                         values[0]};
         std::copy_n(values.begin() + 4, item.parameters.size(), item.parameters.begin());
         mission.items.push_back(std::move(item));
     }

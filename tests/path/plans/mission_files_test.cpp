@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::path {
@@ -65,6 +66,7 @@ TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
     EXPECT_NEAR(*plan.entries[2].circles, 60.0 * 14.0 / 314.159, 1e-3);
     EXPECT_EQ(plan.entries[3].circles, std::optional(1.0));
     EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 4: the circle has no end: it is flown once"});
+    EXPECT_EQ(plan.missing, plan.not_flown);
 }
 
 /// A plan of one leg, with these keys of the mission.
@@ -106,15 +108,127 @@ TEST(MissionFiles, FlyAGroundSpeedAsAnAirspeedAndTimedCirclesWithThePlansSpeed) 
                                         "item 2: the ground speed is flown as an airspeed, which it is in calm air"}));
 }
 
-TEST(MissionFiles, ReportUnknownCommandsAndJumps) {
+TEST(MissionFiles, ReportUnknownCommandsAndEndlessJumps) {
     const auto plan =
-        parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(177, 2, "1, 5, 0, 0, 0, 0, 0") +
+        parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(177, 2, "1, -1, 0, 0, 0, 0, 0") +
                            "," + item(4242, 2, "0, 0, 0, 0, 0, 0, 0") + "," + item(4242, 2, "0, 0, 0, 0, 0, 0, 0") +
-                           "," + item(2000, 2, "0, 0, 1, 0, 0, 0, 0")),
+                           "," + item(2000, 2, "0, 0, 1, 0, 0, 0, 0") + "," + item(94, 3, "0, 0, 0, 0, 47, 8, 0") +
+                           "," + item(177, 2, "40, 2, 0, 0, 0, 0, 0")),
                        "q.plan", {});
+    const std::vector<std::string> missing{"item 6: command 94 is not flown",
+                                           "item 2: the jump to item 1 is not flown: it has no end",
+                                           "item 7: the jump to item 40 is not flown: there is no such item"};
+    EXPECT_EQ(plan.missing, missing);
     EXPECT_EQ(plan.not_flown, (std::vector<std::string>{"item 5: command 2000 is not flown",
-                                                        "item 3 and 1 more: command 4242 is not flown",
-                                                        "item 2: the jump to item 1 is not flown"}));
+                                                        "item 3 and 1 more: command 4242 is not flown", missing[0],
+                                                        missing[1], missing[2]}));
+}
+
+/// Names of the entries from home on, of items with these commands; a jump is {its target, its repetitions}.
+std::vector<std::string> flown_items(const std::vector<std::pair<int, int>>& items, const std::string& firmware = "3",
+                                     std::vector<std::string>* notes = nullptr) {
+    std::vector<std::string> texts;
+    for (const auto& [target, times] : items)
+        texts.push_back(target == 0 ? item(16, 3, fmt::format("0, 0, 0, null, 47.00{}, 8.0, 60", texts.size() + 1))
+                                    : item(177, 2, fmt::format("{}, {}, 0, 0, 0, 0, 0", target, times)));
+    auto text = qgc(fmt::format("{}", fmt::join(texts, ",")));
+    text.insert(text.find("\"plannedHome"), fmt::format("\"firmwareType\": {}, ", firmware));
+    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    if (notes != nullptr) *notes = plan.not_flown;
+    std::vector<std::string> names;
+    for (const auto& entry : plan.entries) names.push_back(entry.name);
+    names.erase(names.begin());  // home
+    return names;
+}
+
+constexpr std::pair<int, int> waypoint{0, 0};
+
+TEST(MissionFiles, RepeatItemsByJumps) {
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(flown_items({waypoint, waypoint, {2, 2}, waypoint}),
+              (Names{"item 1", "item 2", "item 2, round 2", "item 2, round 3", "item 4"}));
+    EXPECT_EQ(flown_items({waypoint, {4, 1}, waypoint, waypoint, {1, 1}}),
+              (Names{"item 1", "item 4", "item 1, round 2", "item 3", "item 4, round 2"}))
+        << "forward, once; back from the end";
+    EXPECT_EQ(flown_items({waypoint, {1, 0}}), Names{"item 1"});
+    EXPECT_NE(rejected([] {
+                  flown_items({waypoint, {1, 30000}});
+              }).find("its jumps repeat more than 2000 items; state fewer repetitions"),
+              std::string::npos);
+}
+
+TEST(MissionFiles, CountNestedJumpsAsTheirAutopilot) {
+    const std::vector<std::pair<int, int>> nested{waypoint, {1, 1}, waypoint, {1, 2}};
+    std::vector<std::string> notes;
+    EXPECT_EQ(flown_items(nested, "3", &notes).size(), 3U * 3U);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes.front().find("item 2: the jump is repeated in each round of another"), std::string::npos);
+    EXPECT_EQ(flown_items(nested, "12", &notes).size(), 2U * 3U + 1U) << "PX4";
+    EXPECT_TRUE(notes.empty());
+}
+
+TEST(MissionFiles, JumpByTheNumbersOfTheFile) {
+    auto numbered = [number = 3](int command, const std::string& parameters) mutable {
+        auto text = item(command, 3, parameters);
+        text.insert(1, fmt::format("\"doJumpId\": {}, ", ++number));
+        return text;
+    };
+    auto items = numbered(16, "0, 0, 0, null, 47.001, 8.0, 60") + ",";
+    items += numbered(16, "0, 0, 0, null, 47.002, 8.0, 60") + ",";
+    items += numbered(177, "5, 1, 0, 0, 0, 0, 0");
+    const auto plan = parse_qgc_plan(qgc(items), "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 4U);
+    EXPECT_EQ(plan.entries.back().name, "item 2, round 2");
+    const auto rows = parse_wpl(
+        "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t47.0\t8.0\t100\t1\n"
+        "1\t0\t3\t16\t0\t0\t0\t0\t47.001\t8\t60\t1\n"
+        "2\t0\t3\t16\t0\t0\t0\t0\t47.002\t8\t60\t1\n"
+        "3\t0\t3\t177\t2\t1\t0\t0\t0\t0\t0\t1\n",
+        "w.waypoints", {});
+    EXPECT_EQ(rows.entries.back().name, "item 2 (line 4), round 2");
+}
+
+TEST(MissionFiles, AssumeTheRadiusThatCirclesDoNotState) {
+    const auto plan_of = [](int command, const AutopilotSettings& settings) {
+        return parse_qgc_plan(qgc(item(command, 3, "50, 0, 0, 1, 47.001, 8.0, 60")), "q.plan", settings);
+    };
+    const auto wing = plan_of(18, {});
+    EXPECT_EQ(wing.entries.back().radius_m, std::optional(80.0));
+    EXPECT_EQ(wing.entries.back().circles, std::optional(50.0));
+    EXPECT_EQ(wing.not_flown, std::vector<std::string>{"item 1: the circle has no radius: 80 m are assumed, of PX4; "
+                                                       "radius_m in [path] states another"});
+    EXPECT_TRUE(wing.missing.empty());
+    EXPECT_EQ(plan_of(18, {.radius_m = {}, .is_rotorcraft = true}).entries.back().radius_m, std::optional(10.0));
+    const auto stated = plan_of(18, {.radius_m = 55.0});
+    EXPECT_EQ(stated.entries.back().radius_m, std::optional(55.0));
+    EXPECT_TRUE(stated.not_flown.empty());
+    EXPECT_EQ(plan_of(19, {.radius_m = {}, .is_rotorcraft = true}).entries.back().hold_s, std::optional(50.0));
+}
+
+TEST(MissionFiles, FlyToTheLandingOfAPattern) {
+    const auto plan = parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") +
+                                         R"(, {"type": "ComplexItem", "complexItemType": "fwLandingPattern",
+"version": 2, "landCoordinate": [47.02, 8.0, 0], "landingApproachCoordinate": [47.03, 8.0, 40], "loiterRadius": 75})"),
+                                     "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 4U);
+    EXPECT_DOUBLE_EQ(plan.entries[2].geographic->latitude_deg, 47.03);
+    EXPECT_EQ(plan.entries[2].altitude_m, std::optional(40.0));
+    EXPECT_DOUBLE_EQ(plan.entries[3].geographic->latitude_deg, 47.02);
+    EXPECT_FALSE(plan.entries[3].altitude_m) << "the descent is the mission's landing";
+    EXPECT_TRUE(plan.missing.empty());
+}
+
+TEST(MissionFiles, NameMovementsThatAreMissing) {
+    const auto missing_of = [](const std::string& more) {
+        return parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + more), "q.plan", {}).missing;
+    };
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(missing_of(R"({"type": "ComplexItem", "complexItemType": "StructureScan", "version": 3})"),
+              Texts{"item 2 (StructureScan): not flown"});
+    EXPECT_EQ(missing_of(item(22, 3, "0, 0, 0, null, 47.001, 8.0, 60")), Texts{"item 2: the take-off is not flown"});
+    EXPECT_EQ(missing_of(item(17, 3, "0, 0, 0, 1, 47.001, 8.0, 60")),
+              Texts{"item 2: the circle has no end: it is flown once"});
+    EXPECT_EQ(missing_of(item(201, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), Texts{}) << "a camera's target";
 }
 
 TEST(MissionFiles, OfBrokenPlansAreErrors) {
@@ -148,12 +262,33 @@ TEST(MissionFiles, OfWaypointFilesHaveTheirLine) {
                   "w.waypoints", {});
     ASSERT_EQ(plan.entries.size(), 3U) << "from home";
     EXPECT_EQ(plan.entries[2].altitude_m, std::optional(70.0));
-    EXPECT_EQ(plan.not_flown, std::vector<std::string>{"item 3 (line 5): the jump to item 1 is not flown"});
+    EXPECT_EQ(plan.not_flown,
+              std::vector<std::string>{"item 3 (line 5): the jump to item 1 is not flown: it has no end"});
     const auto refusal = [](const std::string& text) { return rejected([&] { parse_wpl(text, "w", {}); }); };
     EXPECT_EQ(refusal("east_m\n"), "w:1: begins with 'east_m'; expected \"QGC WPL 110\"");
     EXPECT_EQ(refusal(home + "1\t0\t3\n"), "w:3: has 3 numbers; expected 12: is the file cut off?");
     EXPECT_EQ(refusal(home + "1\tx\n"), "w:3: 'x' is no number; expected 12 numbers");
     EXPECT_EQ(refusal("QGC WPL 110\n"), "w: has no items; expected home and waypoints");
+}
+
+TEST(MissionFiles, OfWaypointFilesMayHaveAByteOrderMarkOrNoHome) {
+    const std::string home = "0\t1\t0\t16\t0\t0\t0\t0\t47.0\t8.0\t100\t1\n";
+    const std::string place = "1\t0\t3\t16\t0\t0\t0\t0\t47.001\t8\t60\t1\n";
+    EXPECT_EQ(parse_wpl("\xEF\xBB\xBFQGC WPL 110\n" + home + place, "w", {}).entries.size(), 2U);
+    const auto without = parse_wpl("QGC WPL 120\n" + place, "w", {});
+    ASSERT_EQ(without.entries.size(), 1U);
+    EXPECT_EQ(without.entries.front().name, "item 1 (line 2)");
+    EXPECT_NE(rejected([] { parse_wpl("QGC WPL 120\n", "w", {}); }).find("no item"), std::string::npos);
+}
+
+TEST(MissionFiles, FlyOneAirspeedWhereAsked) {
+    const auto text = qgc(item(178, 2, "0, 14, -1, 0, 0, 0, 0") + "," + item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60") +
+                          "," + item(19, 3, "60, 0, 50, 1, 47.002, 8.0, 60"));
+    const auto entries =
+        parse_qgc_plan(text, "q.plan", {.radius_m = {}, .airspeed_m_per_s = 12.0, .one_airspeed = true}).entries;
+    ASSERT_EQ(entries.size(), 3U);
+    for (const auto& entry : entries) EXPECT_FALSE(entry.airspeed_m_per_s);
+    EXPECT_NEAR(*entries.back().circles, 60.0 * 12.0 / 314.159, 1e-3);
 }
 
 TEST(MissionFiles, OfRealPlansAreFlownOrRefused) {
