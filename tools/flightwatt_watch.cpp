@@ -20,6 +20,8 @@
 #include "telemetry/log_configuration.h"
 
 #include <cmath>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -86,10 +88,13 @@ class Announcement {
     Clock::time_point start_ = Clock::now();
 };
 
-/// The mission of the aircraft as its link has it: the prediction's, once it is whole and where no option states it.
+/// The missions of the vehicles as their link has them: the prediction's is that of the followed aircraft, once it is
+/// whole and where no option states it.
 class MissionFromLink {
   public:
-    MissionFromLink(const cli::StageCall& call, const WatchArguments& arguments, live::MessageSource& source)
+    /// `waiting`: the input of predictions until the mission is known.
+    MissionFromLink(const cli::StageCall& call, const WatchArguments& arguments, live::MessageSource& source,
+                    const std::optional<live::PredictionInput>& waiting)
         : call_(call), arguments_(arguments), source_(source) {
         const auto& basis = arguments.basis;
         const bool is_stated = basis.mission || basis.plan || basis.remaining_s;
@@ -98,35 +103,65 @@ class MissionFromLink {
                 "--request-mission asks the aircraft for what is flown: expected --model and --battery, "
                 "and none of --mission, --plan and --remaining");
         if (!arguments.source.mavlink || is_stated || !basis.model || !basis.battery) return;
-        const auto [system, component] = parse_identity(arguments.announce_as);
-        mission_.emplace(system, component);
+        identity_ = parse_identity(arguments.announce_as);
+        waiting_ = waiting;
     }
 
-    /// Takes a message; returns the input of predictions by a mission that is new.
-    std::optional<live::PredictionInput> receive(const live::IncomingMessage& message) {
-        if (!mission_ || !mission_->receive(message)) return std::nullopt;
-        const auto file = folder_.path() / "mission.waypoints";
-        write_file_atomically(file, mission_->waypoints());
-        try {
-            auto basis = cli::read_plan_basis(call_, arguments_.basis, file);
-            cli::note(call_, "the mission of the aircraft is known: its way is predicted");
-            return basis;
-        } catch (const InputError& error) {
-            cli::warn(call_, fmt::format("the mission of the aircraft is not used: {}", error.what()));
-            return std::nullopt;
+    void receive(const live::IncomingMessage& message) {
+        if (!waiting_) return;
+        const auto sender = message.text.substr(0, message.text.find(' '));
+        auto& mission = missions_.try_emplace(sender, identity_.first, identity_.second).first->second;
+        if (mission.receive(message)) unread_.insert(sender);
+    }
+
+    /// Returns the input of predictions of this aircraft, where it changes: by its mission, if that is new.
+    std::optional<live::PredictionInput> take(const std::string& aircraft) {
+        std::optional<live::PredictionInput> input;
+        if (aircraft != aircraft_ && is_read_) {
+            unread_.insert(aircraft_);
+            is_read_ = false;
+            input = waiting_;
         }
+        aircraft_ = aircraft;
+        return unread_.erase(aircraft) == 0 ? input : read_mission();
     }
 
     void request() {
-        if (!mission_ || !arguments_.requests_mission) return;
-        for (const auto& packet : mission_->requests(seconds_since(start_))) source_.send(packet);
+        const auto mission = missions_.find(aircraft_);
+        if (mission == missions_.end() || !arguments_.requests_mission) return;
+        for (const auto& packet : mission->second.requests(seconds_since(start_))) source_.send(packet);
     }
 
   private:
+    /// In a file of its own, as the one before is an input. No mission may end the watch.
+    live::PredictionInput read_mission() {
+        is_read_ = true;
+        try {
+            const auto file = folder_.path() / fmt::format("mission-{}.waypoints", ++count_);
+            write_file_atomically(file, missions_.at(aircraft_).waypoints());
+            auto basis = arguments_.basis;
+            basis.plan = file;
+            auto input = cli::read_basis(call_, basis, nullptr);
+            cli::note(call_, fmt::format("the mission of aircraft {} is known: its way is predicted", aircraft_));
+            return input;
+        } catch (const std::exception& error) {
+            cli::warn(call_, fmt::format("the mission of aircraft {} is not used: {}", aircraft_, error.what()));
+            auto input = *waiting_;
+            input.no_prediction_reason = fmt::format("a mission of the aircraft that can be flown: {}", error.what());
+            return input;
+        }
+    }
+
     const cli::StageCall& call_;
     const WatchArguments& arguments_;
     live::MessageSource& source_;
-    std::optional<live::LinkMission> mission_;
+    std::optional<live::PredictionInput> waiting_;  ///< none: missions are not used
+    std::pair<std::uint8_t, std::uint8_t> identity_;
+    std::map<std::string, live::LinkMission, std::less<>> missions_;  ///< of the vehicles
+    std::set<std::string> unread_;                                    ///< vehicles with a new mission
+    std::string aircraft_;                                            ///< the followed one; empty: none yet
+    bool is_read_ = false;                                            ///< its mission
+    int count_ = 0;                                                   ///< of missions read
     TemporaryFolder folder_;
     Clock::time_point start_ = Clock::now();
 };
@@ -271,23 +306,22 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     cli::WatchOutput speaker(call, watched.compute);
     LivePage page(call, arguments.serve, watched.compute, watched.basis);
     Announcement announcement(arguments, *source);
-    MissionFromLink link_mission(call, arguments, *source);
+    MissionFromLink link_mission(call, arguments, *source, watched.basis);
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
         speaker.print_state(state);
         page.print_state(state);
         announcement.print_state(state);
+        if (auto basis = link_mission.take(state.aircraft_id)) {
+            flight.set_input(*basis);
+            watched.basis = std::move(basis);
+        }
         link_mission.request();
         if (!speaker.is_read()) return "the reader of the output has ended";
         return arguments.until_landed && state.landed ? "the aircraft has landed" : "";
     };
-    const auto on_message = [&](const live::IncomingMessage& message) {
-        auto basis = link_mission.receive(message);
-        if (!basis) return;
-        flight.set_input(*basis);
-        watched.basis = std::move(basis);
-    };
+    const auto on_message = [&](const live::IncomingMessage& message) { link_mission.receive(message); };
     const auto why = watch_source(*source, flight, update_flight, on_message);
     flight.end();
     update_flight(0.0);
@@ -323,7 +357,7 @@ with its source, or by a signal, and then prints its last prediction. The source
     auto& options = stage.options;
     cli::add_source_options(options, arguments.source);
     options.add("aircraft", arguments.live.aircraft_id, {.value = "ID"},
-                "the aircraft to watch; default: the one that sends most");
+                "the aircraft to watch; default: the first that flies, until then the one that sends most");
     cli::add_basis_options(options, arguments.basis);
     options.add("replan", arguments.replans,
                 "plan the remaining mission again at every slot of its [plan], or as its [policy] states",

@@ -21,6 +21,10 @@ struct LinkGap : TimeInterval {
 /// gap. A gap without such a counter, or whose counter ran back or did not count, is left unchanged.
 std::vector<LinkGap> bridge_link_gaps(FlightData& data);
 
+/// Returns whether a counter restarts between two times, as with its autopilot: it falls to less than a tenth, and
+/// counts on from there.
+bool restarts(const Track& counter, double from_s, double to_s);
+
 /// Returns a warning for each gap within these sorties.
 std::vector<std::string> gap_warnings(const std::vector<LinkGap>& gaps, std::span<const Sortie> sorties);
 

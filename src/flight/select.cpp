@@ -172,8 +172,9 @@ FlightData select_tracks(const FlightSeries& series) {
 }
 
 std::optional<double> stated_ground_altitude_m(const FlightData& data) {
-    // Altitudes of a rotorcraft are above the reference on the ground.
-    if (data.altitude_m.source.starts_with("ROTORCRAFT_FP")) return 0.0;
+    // Altitudes above the reference on the ground: of Paparazzi's rotorcraft, and MAVLink's relative_alt.
+    const auto& source = data.altitude_m.source;
+    if (source.starts_with("ROTORCRAFT_FP") || source.starts_with("GLOBAL_POSITION_INT")) return 0.0;
     const auto logged = last_value(data.ground_altitude_m);
     return logged ? logged : data.planned_ground_altitude_m;
 }

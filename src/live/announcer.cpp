@@ -46,7 +46,8 @@ void Announcer::add_values(const LiveState& state, double now_s, std::vector<std
             packets.push_back(
                 sender_.packet("NAMED_VALUE_FLOAT", {{"time_boot_ms", now_s / units::milli}, {"value", *value}}, name));
     };
-    if (!state.prediction || state.landed) return;
+    const bool is_silent = std::ranges::find(state.alarms, "silence", &LiveAlarm::kind) != state.alarms.end();
+    if (!state.prediction || state.landed || is_silent) return;
     if (state.prediction->battery) add("fw_land", state.prediction->battery->expected.soc_percent);
     if (state.turn_home)
         add("fw_home", units::minute_from_second(std::max(0.0, state.turn_home->latest_in_s.value_or(0.0))));

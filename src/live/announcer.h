@@ -12,7 +12,7 @@ namespace flightwatt::live {
 
 /// Puts a prediction into packets of MAVLink for a ground station: a heartbeat of an onboard computer, once a second
 /// `fw_land` (charge at landing, %), `fw_home` (minutes until the turn for home, 0: now) and `fw_resv` (minutes to the
-/// reserve), those that are known, and a text at each change of an alarm's grade. It never makes a command.
+/// reserve), those that are known and not of a silent link, and a text at each change of an alarm's grade. It never makes a command.
 class Announcer {
   public:
     /// Announces as a component of a system.

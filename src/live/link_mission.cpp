@@ -34,7 +34,7 @@ bool LinkMission::receive(const IncomingMessage& message) {
                  of("altitude") * metre_per_unit};
     } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
         count_ = static_cast<std::size_t>(of("count"));
-        std::erase_if(items_, [&](const auto& item) { return item.first >= *count_; });
+        items_.clear();  // those of another mission
     } else if (name == "MISSION_ITEM_INT" && of("seq") < max_items && !(of("mission_type") > 0.0)) {
         items_[static_cast<std::size_t>(of("seq"))] = {
             of("frame"),

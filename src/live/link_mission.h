@@ -13,7 +13,7 @@
 
 namespace flightwatt::live {
 
-/// Collects the mission of an aircraft from its messages on a link of MAVLink, which pass by while a ground station
+/// Collects the mission of one aircraft from its messages on a link of MAVLink, which pass by while a ground station
 /// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected.
 class LinkMission {
   public:

@@ -111,6 +111,8 @@ class LiveFlight::Impl {
         if (schedule_) schedule_->reset();
     }
 
+    flight::FlightData data_of(const std::string& sender) const;
+    bool flies(const std::string& sender) const;
     void update_flight(const flight::FlightData& data, LiveState& state);
     void update_battery(const flight::FlightData& data, LiveState& state);
     void check_record(const flight::FlightData& data, const LiveState& state);
@@ -154,21 +156,39 @@ class LiveFlight::Impl {
     std::optional<LiveState> last_predicted_;
 };
 
+/// The tracks of a sender, which end with its last power or altitude, as for predict.
+flight::FlightData LiveFlight::Impl::data_of(const std::string& sender) const {
+    auto series = sender.empty() ? flight::FlightSeries() : store_.series(sender);
+    if (const double now_s = last_time_s(series); std::isfinite(now_s))
+        series = truncate_series(std::move(series), now_s);
+    return select_tracks(series);
+}
+
+bool LiveFlight::Impl::flies(const std::string& sender) const {
+    try {
+        const auto data = data_of(sender);
+        return !data.altitude_m.empty() && !segment(data).sorties.empty();
+    } catch (const std::exception&) {  // what it sends shows no flight
+        return false;
+    }
+}
+
 LiveState LiveFlight::Impl::update(double silent_s) {
     LiveState state;
     state.messages = messages_;
     state.restarts = restarts_;
     state.silence_threshold_s = options_.silence_threshold_s;
     if (input_ && input_->battery) state.reserve_soc_percent = input_->limits.reserve_soc_percent;
-    if (auto busiest = store_.busiest_sender(); !busiest.empty()) aircraft_ = std::move(busiest);
-    auto series = aircraft_.empty() ? flight::FlightSeries() : store_.series(aircraft_);
+    if (const auto senders = store_.senders(); !senders.empty()) {  // one only, once that flies
+        const auto flying = senders.size() == 1
+                                ? senders.begin()
+                                : std::ranges::find_if(senders, [&](const auto& of) { return flies(of); });
+        aircraft_ = flying == senders.end() ? senders.front() : *flying;
+    }
     if (!aircraft_.empty() && aircraft_ != std::exchange(followed_, aircraft_)) heard_s_ = arrival_s_;
     state.time_s = clock_s().value_or(0.0);
     state.time_since_message_s = silent_s + arrival_s_ - heard_s_;
-    // The series ends with the last power or altitude, as for predict.
-    if (const double now_s = last_time_s(series); std::isfinite(now_s))
-        series = truncate_series(std::move(series), now_s);
-    auto data = select_tracks(series);
+    auto data = data_of(aircraft_);
     gaps_ = bridge_link_gaps(data);
     state.aircraft_id = data.aircraft_id;
     state.aircraft_name = data.aircraft_name;
@@ -210,15 +230,16 @@ void LiveFlight::Impl::update_flight(const flight::FlightData& data, LiveState& 
     store_.keep_only(aircraft_);
     const auto& sortie = phases_.sorties.back();
     const double now_s = data.last_s;
-    update_flight_times(sortie, data.altitude_m, now_s,
-                        ended_ || state.time_since_message_s >= options_.silence_threshold_s, state);
+    update_flight_times(sortie, data, ended_ || state.time_since_message_s >= options_.silence_threshold_s, state);
+    state.time_without_power_s = time_without_power_s(data.power_w, state);
+    if (state.time_without_power_s > 0.0) state.power_w = state.voltage_v = state.current_a = std::nullopt;
     if (!state.power_w || !unknown_energy_reason(gaps_, {&sortie, 1}).empty()) return;
     state.energy_wh = integrated_energy_wh(data.power_w, sortie.start_s(), state.landed ? sortie.end_s() : now_s);
 }
 
 void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState& state) {
     record_.reset();
-    if (!input_ || !input_->battery) return;
+    if (!input_ || !input_->battery || state.time_without_power_s > 0.0) return;
     state.battery = estimate_soc(*input_, carried_percent_, data, record_);
     const bool is_counted = state.began_in_air && !record_ && restarts_ == 0;
     if (is_counted && input_->initial_soc_percent)
@@ -232,6 +253,10 @@ std::string LiveFlight::Impl::no_prediction_reason(const flight::FlightData& dat
     if (!input_->no_prediction_reason.empty()) return input_->no_prediction_reason;
     if (!rejected_.empty()) return "a valid power record: " + rejected_;
     if (state.landed) return fmt::format("at {:.1f} s of the log the aircraft has landed", data.last_s);
+    if (state.time_without_power_s > 0.0)
+        return fmt::format("telemetry of power: none for {:.0f} s", state.time_without_power_s);
+    if (phases_.sorties.empty() && states_flight(data))
+        return "a flight in the altitude: the autopilot states that it is in the air";
     if (!state.power_w) {
         const auto reason = no_power_reason(data);
         return reason.empty() ? "telemetry of power" : "measured power: " + reason;
@@ -294,12 +319,17 @@ void LiveFlight::Impl::forecast(LiveState& state) const {
                                 ? state.prediction->cruise.remaining_mean_w + state.prediction->cruise.beyond_w
                                 : *state.expected_power_w;
     const std::vector<battery::ConstantLoad> at_once{{cruise_w, 0.0}};
+    const auto left_s = [&](double from_last_message_s) {
+        return std::max(0.0, from_last_message_s - state.time_since_message_s);
+    };
     state.battery->time_to_reserve_s =
-        forecast_landing(*input_->battery, now, at_once, cruise_w, input_->limits).endurance_s;
+        left_s(forecast_landing(*input_->battery, now, at_once, cruise_w, input_->limits).endurance_s);
     if (!state.prediction) return;
     state.battery->probability_below_reserve = probability_below_reserve(*input_, *state.prediction, *state.battery);
     if (!(input_->path && input_->remaining_s) && state.phase == flight::Phase::cruise)
         state.turn_home = latest_return(*input_, *state.prediction, now);
+    if (state.turn_home && state.turn_home->latest_in_s)
+        state.turn_home->latest_in_s = left_s(*state.turn_home->latest_in_s);
 }
 
 void LiveFlight::Impl::decide(LiveState& state) {

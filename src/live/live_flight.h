@@ -20,7 +20,7 @@ namespace flightwatt::live {
 /// Options of following a flight.
 struct LiveOptions {
     std::string flight = "live";                                    ///< name of the flight
-    std::optional<std::string> aircraft_id = {};                    ///< absent: the aircraft that sends most
+    std::optional<std::string> aircraft_id = {};                    ///< absent: the first that flies
     std::optional<telemetry::LogConfiguration> configuration = {};  ///< definitions; absent: the built-in ones
     bool is_mavlink = false;                                        ///< the messages are MAVLink's
     double silence_threshold_s = 30.0;  ///< time without a message after which there is an alarm

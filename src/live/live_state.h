@@ -67,6 +67,7 @@ struct LiveState {
     std::size_t messages = 0;
     std::size_t restarts = 0;  ///< restarts of the clock
     double time_since_message_s = 0.0;
+    double time_without_power_s = 0.0;            ///< in the air, since the last power, if too long; else 0
     double silence_threshold_s = 0.0;             ///< time_since_message_s above which the link counts as lost
     std::optional<double> reserve_soc_percent;    ///< reserve of the mission
     std::map<std::string, std::size_t> unusable;  ///< number of unusable lines and values, by reason

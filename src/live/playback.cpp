@@ -198,7 +198,14 @@ PlaybackReport play_as_mavlink(const std::filesystem::path& log, const PlaybackO
         return player.end();
     }
     const auto series = choose_aircraft(read_candidates(file, aircraft));
-    for (auto& message : flight_packets(select_tracks(series)))
+    const auto data = select_tracks(series);
+    auto packets = flight_packets(data);
+    std::size_t too_high = 0;
+    for (std::size_t i = 0; i < data.power_w.time_s.size(); ++i)
+        if (data.power_w.value[i] > max_mavlink_current_a * value_at(data.voltage_v, data.power_w.time_s[i]))
+            ++too_high;
+    player.count("currents above 327.67 A, the limit of MAVLink's BATTERY_STATUS", too_high);
+    for (auto& message : packets)
         if (!player.is_stopped()) player.push(std::move(message));
     return player.end();
 }

@@ -14,7 +14,7 @@ namespace flightwatt::telemetry {
 
 struct MavlinkVehicles::State {
     std::map<std::string, std::vector<std::size_t>, std::less<>> wanted;  ///< indices of the fields, by message
-    std::map<int, int> components;                                        ///< of the autopilot, by system
+    std::map<int, Autopilot> autopilots;                                  ///< by system
     MavlinkSequence sequence;
     std::size_t taken_lost = 0;
     std::vector<double> values;  ///< of the last message; a member to reuse its memory
@@ -32,6 +32,8 @@ std::size_t MavlinkVehicles::take_lost() {
     const auto lost = std::max(state_->sequence.lost(), state_->taken_lost);  // one that comes late was counted
     return lost - std::exchange(state_->taken_lost, lost);
 }
+
+bool MavlinkVehicles::alternates() const { return state_->sequence.alternates(); }
 
 MavlinkDecoder::MavlinkDecoder(std::shared_ptr<MavlinkVehicles> vehicles, bool is_tlog)
     : vehicles_(std::move(vehicles)), is_tlog_(is_tlog) {}
@@ -72,9 +74,9 @@ void MavlinkDecoder::forward(const MavlinkFrame& frame, std::string_view entry, 
     auto& state = *vehicles_->state_;
     const bool is_known = frame.message != nullptr;
     if (is_known && frame.message->layout.name == "HEARTBEAT" && is_autopilot(frame))
-        state.components.try_emplace(frame.system, frame.component);
-    const auto autopilot = state.components.find(frame.system);
-    if (autopilot == state.components.end() || !is_of_vehicle(frame, autopilot->second)) return;
+        add_autopilot(frame, state.autopilots);
+    const auto autopilot = state.autopilots.find(frame.system);
+    if (autopilot == state.autopilots.end() || !is_of_vehicle(frame, autopilot->second.component)) return;
     if (!state.sequence.add(frame)) return;
     const auto name = is_known ? frame.message->layout.name : fmt::format("MESSAGE_{}", frame.id);
     const auto sender = fmt::format("{}", frame.system);

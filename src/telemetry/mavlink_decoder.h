@@ -35,6 +35,8 @@ class MavlinkVehicles {
     ~MavlinkVehicles();
     /// Returns the number of packets that got lost on the link since the last call.
     std::size_t take_lost();
+    /// Returns whether that number is more than a link loses, as two senders have one id, or one is heard twice.
+    bool alternates() const;
 
   private:
     friend class MavlinkDecoder;

@@ -58,6 +58,15 @@ TEST(DischargeRecord, IntegratesTheCurrentWhereNothingCounts) {
     }
 }
 
+TEST(DischargeRecord, IntegratesTheCurrentWhereTheCounterRestarts) {
+    auto series = flight();
+    const double counted_ah = series.charge_ah.back() - series.charge_ah.front();
+    const double before_ah = series.charge_ah[series.charge_ah.size() / 3];
+    for (std::size_t i = series.charge_ah.size() / 3; i < series.charge_ah.size(); ++i)
+        series.charge_ah[i] -= before_ah;
+    EXPECT_NEAR(record_of(series).charge_ah.back(), counted_ah, 0.02 * counted_ah);
+}
+
 TEST(DischargeRecord, BridgesGapsByTheCounter) {
     test::SampleColumns series;
     for (int i = 0; i < 100; ++i) {

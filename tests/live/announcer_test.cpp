@@ -52,8 +52,13 @@ TEST(Announcer, SendsKnownValuesOnceASecond) {
     EXPECT_THAT(announced(announcer, state, 1.0), ElementsAre("HEARTBEAT", "fw_land 235", "fw_home 0"))
         << "too late: now";
     EXPECT_THAT(announced(announcer, LiveState{}, 2.0), ElementsAre("HEARTBEAT")) << "nothing is known";
+    state.alarms = {{"silence", "alarm", "", ""}};
+    announced(announcer, state, 2.5);
+    EXPECT_THAT(announced(announcer, state, 3.0), ElementsAre("HEARTBEAT")) << "what is known is old";
+    state.alarms.clear();
     state.landed = true;
-    EXPECT_THAT(announced(announcer, state, 3.0), ElementsAre("HEARTBEAT"));
+    EXPECT_THAT(announced(announcer, state, 4.0), testing::Contains("HEARTBEAT"));
+    EXPECT_THAT(announced(announcer, state, 5.0), ElementsAre("HEARTBEAT"));
 }
 
 TEST(Announcer, SendsEachChangeOfAnAlarmsGrade) {

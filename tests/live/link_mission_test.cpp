@@ -13,6 +13,7 @@ using test::little_endian;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 IncomingMessage message_of(const std::string& packet) { return {0.0, "1 ANY", false, {}, packet}; }
 
@@ -61,6 +62,19 @@ TEST(LinkMission, AsksForWhatIsMissingUntilItIsWhole) {
               "1\t0\t3\t16\t0\t0\t0\t0\t47.01\t8\t50\t1\n"
               "2\t0\t3\t16\t0\t0\t0\t0\t47.02\t8\t60\t1\n")
         << "ArduPilot's first item is home";
+}
+
+// A mission of as many items is not mixed with the one before it.
+TEST(LinkMission, IsNewOnceTheLastItemOfAnotherOneIsReceived) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat()));
+    for (const double first_deg : {47.0, 48.0}) {
+        EXPECT_FALSE(mission.receive(message_of(count_of(vehicle, 2))));
+        EXPECT_FALSE(mission.receive(message_of(item(vehicle, 0, first_deg, 0.0F))));
+        EXPECT_TRUE(mission.receive(message_of(item(vehicle, 1, first_deg + 0.01, 50.0F))));
+    }
+    EXPECT_THAT(mission.waypoints(), Not(HasSubstr("\t47")));
 }
 
 TEST(LinkMission, HasTheHomeOfOtherAutopilotsBeforeTheFirstItem) {

@@ -9,8 +9,11 @@
 #include "live/live_flight.h"
 #include "live/sources/flight_packets.h"
 #include "live/sources/message_readers.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -107,6 +110,22 @@ TEST(LiveFlightByMavlink, HearsAFlightThatIsPlayed) {
     EXPECT_NEAR(state.energy_wh.value(), energy_wh_of_log(log), 0.01 * energy_wh_of_log(log));
 }
 
+TEST(FlightPackets, HaveTheHeightAboveTheGroundAndNoCurrentAboveTheLimit) {
+    flight::FlightData data;
+    data.power_w.time_s = data.voltage_v.time_s = data.altitude_m.time_s = {0.0, 1.0};
+    data.power_w.value = {100.0, 5'000.0};
+    data.voltage_v.value = {10.0, 10.0};
+    data.altitude_m.value = {400.0, 450.0};
+    std::map<std::string, std::vector<double>> sent;
+    for (const auto& message : flight_packets(data)) {
+        const auto packet = telemetry::read_mavlink_packet(message.packet).value();
+        for (const auto* field : {"current_battery", "relative_alt"})
+            if (packet.name != "SYS_STATUS" && packet.of.contains(field)) sent[field].push_back(packet.of.at(field));
+    }
+    EXPECT_THAT(sent["current_battery"], testing::ElementsAre(1'000.0, -1.0)) << "500 A";
+    EXPECT_THAT(sent["relative_alt"], testing::ElementsAre(0.0, 50'000.0));
+}
+
 TEST(LiveFlightByMavlink, FollowsTheVehicleThatItWasTold) {
     test::MavlinkSender other{9, 1};
     CollectedMessages received;
@@ -123,6 +142,84 @@ TEST(LiveFlightByMavlink, FollowsTheVehicleThatItWasTold) {
     EXPECT_GT(senders("9"), 100);
     EXPECT_GT(senders("1"), 5000);
     EXPECT_EQ(senders("255"), 0);  // a ground station
+}
+
+/// Messages of an aircraft as they are received, ten times a second.
+std::vector<IncomingMessage> received_of(int count, const std::function<std::string(int tenth)>& packets) {
+    CollectedMessages received;
+    MavlinkReader reader(received, vehicles(), true);
+    for (int i = 0; i < count; ++i) {
+        const auto bytes = packets(i);
+        for (std::size_t at = 0; at < bytes.size();) {
+            const auto size = 12 + static_cast<std::size_t>(static_cast<unsigned char>(bytes[at + 1]));
+            reader.push(test::tlog_entry(0.1 * i, bytes.substr(at, size)));
+            at += size;
+        }
+    }
+    return received.messages;
+}
+
+/// A wing in the cruise, whose height varies by 8 m.
+std::string packets_of_cruise(test::MavlinkSender& wing, int tenth, bool has_height_above_home) {
+    const double height_m = 80.0 + 8.0 * std::sin(tenth / 150.0);
+    auto packets = wing.hud(0.0F, static_cast<float>(400.0 + height_m), 45) + wing.status(11'800, 200);
+    if (has_height_above_home) packets += wing.position(0.1 * tenth, height_m);
+    if (tenth % 10 == 0) packets += wing.heartbeat(1) + wing.packet(245, std::string("\0\2", 2));  // in the air
+    return packets;
+}
+
+TEST(LiveFlightByMavlink, ThatIsHeardFromItsCruiseOnIsInTheAir) {
+    test::MavlinkSender wing;
+    const auto state = state_after(received_of(3000, [&](int i) { return packets_of_cruise(wing, i, true); }));
+    EXPECT_TRUE(state.began_in_air);
+    EXPECT_FALSE(state.landed);
+    EXPECT_EQ(state.phase, flight::Phase::cruise);
+}
+
+TEST(LiveFlightByMavlink, HasNotLandedWhileItsAutopilotStatesThatItFlies) {
+    test::MavlinkSender wing;
+    LiveOptions options;
+    options.is_mavlink = true;
+    LiveFlight flight(options, std::nullopt, nullptr);
+    for (const auto& message : received_of(4000, [&](int i) { return packets_of_cruise(wing, i, false); })) {
+        flight.receive(message, *message.time_s);
+        if (message.text != "1 HEARTBEAT") continue;
+        ASSERT_FALSE(flight.update().landed) << *message.time_s;
+    }
+}
+
+TEST(LiveFlightByMavlink, FollowsTheFirstThatFliesOfMoreThatSendMore) {
+    test::MavlinkSender wing{2, 1};
+    test::MavlinkSender parked{1, 1};
+    const auto state = state_after(received_of(2000, [&](int i) {
+        auto packets = packets_of_cruise(wing, i, true);
+        for (int k = 0; k < 3; ++k) packets += parked.position(0.1 * i + 0.01 * k, 0.0) + parked.status(12'300, 20);
+        return i % 10 == 0 ? parked.heartbeat(1, 3, 0) + packets : packets;
+    }));
+    EXPECT_EQ(state.aircraft_id, "2");
+    EXPECT_TRUE(state.phase);
+}
+
+TEST(MavlinkReader, HearsTheAutopilotBehindAGenericHeartbeat) {
+    test::MavlinkSender gimbal{1, 154};
+    test::MavlinkSender vehicle;
+    CollectedMessages received;
+    MavlinkReader reader(received, vehicles(), false);
+    reader.push(gimbal.heartbeat(0, 0) + vehicle.heartbeat() + vehicle.status(15'800, 0) + gimbal.heartbeat(0, 0));
+    EXPECT_EQ(received.messages.size(), 3U);
+    EXPECT_EQ(received.messages.back().text, "1 SYS_STATUS");
+}
+
+TEST(MavlinkReader, TwoVehiclesWithOneIdAreNoLoss) {
+    test::MavlinkSender first;
+    test::MavlinkSender second;
+    second.sequence = 100;
+    CollectedMessages received;
+    MavlinkReader reader(received, vehicles(), false);
+    reader.push(first.heartbeat());
+    for (int i = 0; i < 1000; ++i) reader.push(first.position(i, 0.0) + second.position(i, 50.0));
+    EXPECT_GT(received.counts["numbers of messages missing: two vehicles have one id, or one is heard twice"],
+              10 * received.counts["messages lost on the link"]);
 }
 
 TEST(MavlinkReader, CountsBytesThatAreNoPacketsAndContinues) {

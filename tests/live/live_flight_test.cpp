@@ -45,6 +45,42 @@ TEST(LiveFlight, SaysWhatPredictSaysOfTheLogAtThatMoment) {
     }
 }
 
+TEST(LiveFlight, PowerThatEndsInFlightIsAnAlarmAndNoPrediction) {
+    const auto log = test::sample(1);
+    LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
+    auto messages = test::messages_of(log, 400.0);
+    std::erase_if(messages,
+                  [](const auto& of) { return of.time_s > 300.0 && of.text.find(" ESTIMATOR ") == std::string::npos; });
+    const auto state_at = [&](double time_s) {
+        std::erase_if(messages, [&](const auto& of) {
+            const bool is_due = of.time_s <= time_s;
+            if (is_due) flight.receive(of, *of.time_s);
+            return is_due;
+        });
+        return flight.update();
+    };
+    const auto before = state_at(325.0);
+    EXPECT_TRUE(before.prediction) << before.no_prediction_reason;
+    EXPECT_TRUE(before.alarms.empty());
+    const auto after = state_at(345.0);
+    EXPECT_FALSE(after.prediction);
+    EXPECT_THAT(after.no_prediction_reason, testing::StartsWith("telemetry of power: none for 4"));
+    EXPECT_FALSE(after.energy_wh || after.power_w || after.battery);
+    ASSERT_EQ(after.alarms.size(), 1U);
+    EXPECT_EQ(after.alarms.front().kind, "silence");
+}
+
+TEST(LiveFlight, TheTimeLeftRunsDownWhileTheLinkIsSilent) {
+    const auto log = test::sample(1);
+    LiveFlight flight(test::options_of(log), test::wing_basis(), nullptr);
+    test::receive_all(flight, test::messages_of(log, 400.0));
+    const auto now = flight.update();
+    const auto later = flight.update(20.0);
+    EXPECT_NEAR(later.turn_home->latest_in_s.value(), now.turn_home->latest_in_s.value() - 20.0, 1e-9);
+    EXPECT_NEAR(later.battery->time_to_reserve_s.value(), now.battery->time_to_reserve_s.value() - 20.0, 1e-9);
+    EXPECT_EQ(flight.update(1e6).turn_home->latest_in_s, 0.0);
+}
+
 TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
     const auto log = test::sample(1);
     auto basis = test::wing_basis();

@@ -109,6 +109,27 @@ std::unique_ptr<live::MessageSource> follow(const SourceArguments& arguments, co
     return live::follow_binary_log(file, read_definitions(arguments, file));
 }
 
+/// The input of predictions of a plan that is flown with the model and the battery of the options.
+PredictionInput read_plan_basis(const StageCall& call, const BasisArguments& arguments,
+                                const std::filesystem::path& plan) {
+    if (!arguments.model || !arguments.battery)
+        throw UsageError("a plan is flown with --model MODEL.toml and --battery BATTERY.toml");
+    mission::NewMission fresh;
+    fresh.name = plan.stem().string();
+    fresh.mechanical = std::filesystem::absolute(*arguments.model).string();
+    fresh.model = mechanical::read_mechanical_model(*arguments.model);
+    fresh.battery = std::filesystem::absolute(*arguments.battery).string();
+    fresh.pack = battery::read_battery(*arguments.battery);
+    fly_plan({plan, std::filesystem::absolute(plan).string(), {}, arguments.airspeed_m_per_s}, *arguments.model, fresh);
+    for (const auto& chosen : fresh.flown->chosen) note(call, fmt::format("chosen: {}", chosen));
+    const auto file = plan.string();
+    const auto mission = mission::parse_mission(new_mission_toml(fresh), file, {.allow_unplanned = true});
+    warn_of_setup(call, setup_of(mission));
+    auto basis = live::input_from_mission(setup_of(mission), file);
+    basis.remaining_s = arguments.remaining_s;
+    return basis;
+}
+
 }  // namespace
 
 void add_basis_options(Options& options, BasisArguments& arguments) {
@@ -145,26 +166,6 @@ void add_basis_options(Options& options, BasisArguments& arguments) {
          .unit = "%",
          .needs = with_battery ? std::vector<std::string>{"battery", "mission"} : std::vector<std::string>{"battery"}},
         "the battery's state of charge when the log begins; else by its voltage at rest");
-}
-
-PredictionInput read_plan_basis(const StageCall& call, const BasisArguments& arguments,
-                                const std::filesystem::path& plan) {
-    if (!arguments.model || !arguments.battery)
-        throw UsageError("a plan is flown with --model MODEL.toml and --battery BATTERY.toml");
-    mission::NewMission fresh;
-    fresh.name = plan.stem().string();
-    fresh.mechanical = std::filesystem::absolute(*arguments.model).string();
-    fresh.model = mechanical::read_mechanical_model(*arguments.model);
-    fresh.battery = std::filesystem::absolute(*arguments.battery).string();
-    fresh.pack = battery::read_battery(*arguments.battery);
-    fly_plan({plan, std::filesystem::absolute(plan).string(), {}, arguments.airspeed_m_per_s}, *arguments.model, fresh);
-    for (const auto& chosen : fresh.flown->chosen) note(call, fmt::format("chosen: {}", chosen));
-    const auto file = plan.string();
-    const auto mission = mission::parse_mission(new_mission_toml(fresh), file, {.allow_unplanned = true});
-    warn_of_setup(call, setup_of(mission));
-    auto basis = live::input_from_mission(setup_of(mission), file);
-    basis.remaining_s = arguments.remaining_s;
-    return basis;
 }
 
 PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,

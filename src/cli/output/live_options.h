@@ -7,7 +7,6 @@
 #include "mission/mission.h"
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,11 +36,6 @@ void add_basis_options(Options& options, BasisArguments& arguments);
 /// live::require_spread and live::require_physical.
 live::PredictionInput read_basis(const StageCall& call, const BasisArguments& arguments,
                                  std::optional<mission::MissionVariant>* mission = nullptr);
-
-/// The input of predictions of a plan that is flown with the model and the battery of the options. Throws UsageError if
-/// one of them is missing.
-live::PredictionInput read_plan_basis(const StageCall& call, const BasisArguments& arguments,
-                                      const std::filesystem::path& plan);
 
 /// The time that is asked for: since lift-off, on the log's clock, or (none of them) the end of the log.
 struct RequestedTime {

@@ -3,6 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/link_gaps.h"
 #include "flight/select/device_sum.h"
 
 #include <map>
@@ -170,6 +171,12 @@ PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases
         if (!time_s.empty()) record.energy_j += integrated(time_s, record.power_w, sortie.start_s(), sortie.end_s());
         record.duration_s += sortie.end_s() - sortie.start_s();
     }
+    const auto restarts_in_flight = [&](const Track& counter) {
+        return std::ranges::any_of(phases.sorties,
+                                   [&](const Sortie& of) { return restarts(counter, of.start_s(), of.end_s()); });
+    };
+    if (restarts_in_flight(data.charge_ah)) record.charge_ah.value.clear();  // the autopilot restarted: power is sound
+    if (restarts_in_flight(data.energy_wh)) record.energy_wh.value.clear();
     close(record, record.power_w, record.energy_wh);
     close(record, record.current_a, record.charge_ah);
     derive_facts(record, resting_samples(record, phases.rests, data.armed, options));

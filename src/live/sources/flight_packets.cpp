@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "flight/select.h"
 #include "telemetry/mavlink_sender.h"
 
 #include <algorithm>
@@ -18,7 +19,11 @@ double state_or(const flight::Track& track, double time_s, double otherwise) {
 /// Packets of an aircraft by its tracks, with the state of the others at each time.
 class AircraftSender {
   public:
-    explicit AircraftSender(const flight::FlightData& data) : data_(data) {}
+    explicit AircraftSender(const flight::FlightData& data) : data_(data) {
+        const auto ground_m = stated_ground_altitude_m(data);
+        if (const auto& of_log = data.altitude_m.value; ground_m || !of_log.empty())
+            ground_m_ = ground_m ? *ground_m : std::ranges::min(of_log);
+    }
 
     void send_heartbeat(double time_s) {
         constexpr double fixed_wing = 1.0;
@@ -48,11 +53,12 @@ class AircraftSender {
         constexpr double no_temperature = 32'767.0;
         const double voltage_v = value_at(data_.voltage_v, time_s);
         const double voltage_mv = voltage_v / units::milli;
+        const bool has_current = voltage_v > 0.0 && power_w / voltage_v <= max_mavlink_current_a;
         telemetry::MavlinkSender::Values values{
             {"current_consumed", state_or(data_.charge_ah, time_s, -units::milli) / units::milli},
             {"energy_consumed", -1.0},
             {"temperature", no_temperature},
-            {"current_battery", voltage_v > 0.0 ? 100.0 * power_w / voltage_v : -1.0},
+            {"current_battery", has_current ? 100.0 * power_w / voltage_v : -1.0},
             {"battery_remaining", -1.0},
             {"voltages[0]", std::min(voltage_mv, cell_limit_mv)},
             {"voltages[1]", voltage_mv > cell_limit_mv ? voltage_mv - cell_limit_mv : cell_limit_mv + 1.0}};
@@ -72,7 +78,7 @@ class AircraftSender {
              {"lat", state_or(data_.latitude_deg, time_s, 0.0) * 1e7},
              {"lon", state_or(data_.longitude_deg, time_s, 0.0) * 1e7},
              {"alt", altitude_m / units::milli},
-             {"relative_alt", altitude_m / units::milli},
+             {"relative_alt", (altitude_m - ground_m_) / units::milli},
              {"vx", 100.0 * speed * std::cos(course)},
              {"vy", 100.0 * speed * std::sin(course)},
              {"vz", -100.0 * climb},
@@ -95,6 +101,7 @@ class AircraftSender {
     }
 
     const flight::FlightData& data_;
+    double ground_m_ = 0.0;  ///< altitude of the ground, as the log states it, else the lowest one
     telemetry::MavlinkSender sender_{1, 1};
     std::vector<IncomingMessage> messages_;
 };

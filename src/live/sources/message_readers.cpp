@@ -138,7 +138,10 @@ void MavlinkReader::restart() {
 void MavlinkReader::count_unusable() {
     const auto skipped = decoder_.skipped_bytes();
     sink_.count("bytes between frames", skipped - std::exchange(skipped_bytes_, skipped));
-    sink_.count("messages lost on the link", vehicles_->take_lost());
+    const auto lost = vehicles_->take_lost();
+    sink_.count(vehicles_->alternates() ? "numbers of messages missing: two vehicles have one id, or one is heard twice"
+                                        : "messages lost on the link",
+                lost);
 }
 
 }  // namespace flightwatt::live

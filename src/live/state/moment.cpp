@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
 #include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
@@ -133,14 +134,29 @@ ModelDeviation model_deviation(const Prediction& prediction, const PredictionInp
 
 }  // namespace
 
-void update_flight_times(const flight::Sortie& sortie, const flight::Track& altitude_m, double now_s, bool is_over,
-                         LiveState& state) {
+bool states_flight(const flight::FlightData& data) {
+    constexpr double recent_s = 10.0;
+    const auto is_now = [&](const flight::Track& of, double value) {
+        return !of.empty() && of.value.back() == value && of.time_s.back() >= data.last_s - recent_s;
+    };
+    return is_now(data.landed, 0.0) && !is_now(data.armed, 0.0);
+}
+
+double time_without_power_s(const flight::Track& power_w, const LiveState& state) {
+    if (power_w.empty() || !state.phase) return 0.0;
+    const double without_s = state.time_s - power_w.time_s.back();
+    const double usual_s = 3.0 * flight::median_interval_s(power_w.time_s);
+    return without_s >= std::max(state.silence_threshold_s, usual_s) ? without_s : 0.0;
+}
+
+void update_flight_times(const flight::Sortie& sortie, const flight::FlightData& data, bool is_over, LiveState& state) {
     using flight::Phase;
+    const double now_s = data.last_s;
     const auto& first = sortie.phases.front();
     const auto& last = sortie.phases.back();
     state.began_in_air = first.phase != Phase::takeoff || !first.complete;
-    state.landed =
-        last.phase == Phase::landing && last.complete && (is_over || has_stayed(altitude_m, last.end.time_s, now_s));
+    state.landed = last.phase == Phase::landing && last.complete &&
+                   (is_over || (has_stayed(data.altitude_m, last.end.time_s, now_s) && !states_flight(data)));
     if (!state.began_in_air) state.lift_off_s = first.start.time_s;
     state.flight_time_s = (state.landed ? sortie.end_s() : now_s) - sortie.start_s();
     if (state.landed) return;
@@ -211,6 +227,7 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
 void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
                                LiveBattery& result) {
     if (charge_ah.empty() || result.soc_percent) return;
+    if (restarts(charge_ah, charge_ah.time_s.front(), charge_ah.time_s.back())) return;
     const double drawn_ah = charge_ah.value.back();
     const double left_percent = initial_soc_percent - units::percentage(drawn_ah, capacity_ah);
     if (!(drawn_ah > 0.0) || !(left_percent > 0.0)) return;  // it does not count, restarted, or counts another pack
@@ -227,6 +244,12 @@ std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<P
         alarms.push_back({"silence", state.phase ? alarm : caution,
                           fmt::format("nothing was received for {:.0f} s", state.time_since_message_s),
                           "Check antenna and line of sight: the numbers are old"});
+    }
+    if (alarms.empty() && state.time_without_power_s > 0.0) {
+        alarms.push_back(
+            {"silence", alarm,
+             fmt::format("no power was received for {:.0f} s, though the aircraft sends", state.time_without_power_s),
+             "Turn home: the charge is unknown"});
     }
     if (state.prediction && state.prediction->battery) add_reserve_alarm(state, grade_of(before, "reserve"), alarms);
     const double missing_v = state.phase && state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;

@@ -165,9 +165,12 @@ std::size_t TelemetryStore::rows() const {
     return rows;
 }
 
-std::string TelemetryStore::busiest_sender() const {
-    const auto busiest = std::ranges::max_element(log_.senders, {}, rows_of);
-    return busiest == log_.senders.end() ? "" : busiest->id;
+std::vector<std::string> TelemetryStore::senders() const {
+    std::multimap<std::size_t, std::string, std::greater<>> by_rows;
+    for (const auto& sender : log_.senders) by_rows.emplace(rows_of(sender), sender.id);
+    std::vector<std::string> senders;
+    for (auto& [rows, sender] : by_rows) senders.push_back(std::move(sender));
+    return senders;
 }
 
 std::map<std::string, std::size_t> TelemetryStore::skipped() const {

@@ -40,8 +40,8 @@ class TelemetryStore {
 
     /// Returns the number of rows of all senders.
     std::size_t rows() const;
-    /// Returns the sender of most rows; empty without rows.
-    std::string busiest_sender() const;
+    /// Returns the senders with rows, that of most rows first.
+    std::vector<std::string> senders() const;
     /// Returns the series of a sender.
     flight::FlightSeries series(const std::string& sender) const;
     /// Returns the numbers of unusable messages and values, by reason.

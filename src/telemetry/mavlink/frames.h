@@ -46,6 +46,9 @@ class MavlinkSequence {
     bool add(const MavlinkFrame& frame);
     std::size_t received() const { return received_; }
     std::size_t lost() const { return lost_; }
+    /// Returns whether more is missing than a link loses: the numbers of two senders with one id, or of one that is
+    /// heard twice, by seconds apart, alternate.
+    bool alternates() const { return received_ > 100 && lost_ > 5 * received_; }
 
   private:
     struct Last {

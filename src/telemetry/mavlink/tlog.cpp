@@ -43,8 +43,8 @@ void for_each_entry(std::string_view bytes, const OnEntry& on_entry, const OnSki
 
 /// The component that flies each system. Without its heartbeat it is the first one that states a position or a battery.
 struct Census {
-    std::map<int, int> autopilots;
-    std::map<int, int> others;
+    std::map<int, Autopilot> autopilots;
+    std::map<int, Autopilot> others;
     std::set<int> px4 = {};  ///< systems
     std::uint64_t start_us = 0;
 
@@ -54,10 +54,10 @@ struct Census {
         if (frame.message == nullptr) return;
         const auto& name = frame.message->layout.name;
         if (name == "HEARTBEAT" && is_autopilot(frame)) {
-            autopilots.try_emplace(frame.system, frame.component);
+            add_autopilot(frame, autopilots);
             if (frame.number("autopilot") == autopilot_px4) px4.insert(frame.system);
         } else if (name == "SYS_STATUS" || name == "GLOBAL_POSITION_INT") {
-            others.try_emplace(frame.system, frame.component);
+            others.try_emplace(frame.system, Autopilot{frame.component});
         }
     }
 
@@ -94,7 +94,12 @@ class Vehicle {
 
     AutopilotLog take() {
         for (const auto& [id, layout] : layouts_) rows_.list(layout);
-        if (sequence_.lost() > 0) {
+        if (sequence_.alternates()) {
+            rows_.facts().notes.push_back(
+                fmt::format("the numbers of the messages of system {} alternate: two vehicles have this id, or one was "
+                            "heard twice; give each its own (SYSID_THISMAV, MAV_SYS_ID)",
+                            system_));
+        } else if (sequence_.lost() > 0) {
             const auto all = static_cast<double>(sequence_.lost() + sequence_.received());
             rows_.facts().notes.push_back(
                 fmt::format("{:.1f} % of the messages of system {} were lost on the link",
@@ -175,8 +180,8 @@ class Vehicle {
 std::vector<Vehicle> vehicles_of(const Census& census, const std::filesystem::path& file,
                                  const std::vector<MessageRequest>& wanted) {
     std::vector<Vehicle> vehicles;
-    for (const auto& [system, component] : census.autopilots.empty() ? census.others : census.autopilots)
-        vehicles.emplace_back(system, component, census, file, wanted);
+    for (const auto& [system, autopilot] : census.autopilots.empty() ? census.others : census.autopilots)
+        vehicles.emplace_back(system, autopilot.component, census, file, wanted);
     return vehicles;
 }
 

@@ -10,6 +10,16 @@ bool is_autopilot(const MavlinkFrame& heartbeat) {
     return heartbeat.number("autopilot") != no_autopilot && !others.contains(heartbeat.number("type"));
 }
 
+void add_autopilot(const MavlinkFrame& heartbeat, std::map<int, Autopilot>& autopilots) {
+    constexpr double generic = 0.0;  // also what cameras and computers state that leave their type out
+    constexpr int usual_component = 1;
+    const int rank =
+        (heartbeat.number("autopilot") != generic ? 2 : 0) + (heartbeat.component == usual_component ? 1 : 0);
+    const Autopilot claims{heartbeat.component, rank};
+    auto& known = autopilots.try_emplace(heartbeat.system, claims).first->second;
+    if (rank > known.rank) known = claims;
+}
+
 bool is_of_vehicle(const MavlinkFrame& frame, int component) {
     constexpr int first_battery = 180;
     constexpr int last_battery = 181;

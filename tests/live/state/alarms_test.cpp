@@ -49,6 +49,16 @@ TEST(AlarmsOf, AGradeEndsAtHalfOfItsThreshold) {
                                              "alarm", "alarm", "alarm", "caution", "caution", "-", "alarm", "-"));
 }
 
+TEST(AlarmsOf, PowerThatEndsIsASilence) {
+    auto state = flying(0.0);
+    state.time_without_power_s = 40.0;
+    const auto alarms = find_alarms(state, input(), {});
+    ASSERT_EQ(alarms.size(), 1U);
+    EXPECT_EQ(alarms.front().kind, "silence");
+    EXPECT_EQ(alarms.front().grade, "alarm");
+    EXPECT_THAT(alarms.front().text, testing::StartsWith("no power was received for 40 s"));
+}
+
 TEST(AlarmsOf, AProbabilityThatVariesAroundAThresholdRaisesOneAlarm) {
     std::vector<LiveAlarm> alarms;
     int changes = 0;

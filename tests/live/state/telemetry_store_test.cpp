@@ -36,7 +36,7 @@ TEST(TelemetryStore, HoldsAtEachMomentWhatReadingALogThatEndsThereGives) {
         const auto log = telemetry::parse_telemetry(text, "live", std::nullopt, flight::flight_messages());
         for (const auto* sender : {"20", "7"}) EXPECT_EQ(store.series(sender), flight::flight_series(log, sender));
     }
-    EXPECT_EQ(store.busiest_sender(), "20");
+    EXPECT_EQ(store.senders(), (std::vector<std::string>{"20", "7"}));
     EXPECT_EQ(store.rows(), 60U);
     EXPECT_EQ(power_track(store.series("20")).time_s.size(), 20U);
 }

@@ -69,6 +69,19 @@ TEST(Tlog, LeavesOtherComponentsOfTheVehicleOutExceptItsBattery) {
     EXPECT_EQ(sender.table("BATTERY_STATUS")->time_s.size(), 1U);
 }
 
+// A gimbal whose heartbeat leaves its type out comes first.
+TEST(Tlog, ANamedAutopilotGoesBeforeAGenericHeartbeat) {
+    test::MavlinkSender gimbal{1, 154};
+    for (const auto& [component, autopilot] : {std::pair<std::uint8_t, std::uint8_t>{1, 0}, {7, 3}}) {
+        test::MavlinkSender vehicle{1, component};
+        const auto logs =
+            read(test::tlog_entry(0, gimbal.heartbeat(0, 0)) + test::tlog_entry(1, vehicle.heartbeat(2, autopilot)) +
+                 test::tlog_entry(2, vehicle.status(15'800, 0)) + test::tlog_entry(3, gimbal.heartbeat(0, 0)));
+        ASSERT_EQ(logs.size(), 1U);
+        EXPECT_NE(logs.front().log.senders.front().table("SYS_STATUS"), nullptr);
+    }
+}
+
 TEST(Tlog, CountsDamageAndContinuesBehindIt) {
     test::MavlinkSender vehicle;
     std::string log = "damaged beginning";
