@@ -49,7 +49,7 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
     return {
         field("plan", &R::plan, "its file"),
         field("fits", &R::fit, "yes, perhaps or no"),
-        field("reason", &R::reason, "why it cannot be flown, or its probability is unknown; empty otherwise"),
+        field("reason", &R::reason, "why it cannot be flown, or is uncertain; empty otherwise"),
         field("probability", &R::probability, "of keeping the reserve; null: unknown"),
         field("probability_interval_95", &R::probability_95, "in new flights"),
         field("probability_required", &R::probability_required, "by --probability"),
@@ -133,9 +133,10 @@ std::string answer_line(const PlanCheck& check) {
     if (!check.probability)
         return fmt::format("{}, {} the reserve of {} as modelled; {}", start,
                            check.flown.keeps_reserve ? "keeps" : "misses", reserve, check.reason);
-    return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required)",
+    return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required){}",
                        start, reserve, percent_text(*check.probability), percent_text(check.probability_95.low),
-                       percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0));
+                       percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0),
+                       check.reason.empty() ? "" : "; but " + check.reason);
 }
 
 std::string remedy_text(const answer::PlanRemedy& remedy) {
@@ -167,7 +168,8 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
              ""});
     for (const auto& remedy : check.remedies)
         lines.push_back({&remedy == &check.remedies.front() ? "Helps" : "", remedy_text(remedy), ""});
-    if (check.fit != PlanFit::yes && check.remedies.empty() && check.probability)
+    const bool is_missed = check.probability < check.probability_required || !check.flown.keeps_reserve;
+    if (is_missed && check.remedies.empty() && check.probability)
         lines.push_back({"Helps", "nothing that was tried: another airspeed, a part of the path, a larger pack", ""});
     if (!check.chosen.empty()) lines.push_back({"Chosen", fmt::format("{}", fmt::join(check.chosen, "; ")), ""});
     text += lines_text(lines, columns);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::answer {
 namespace {
@@ -281,9 +282,15 @@ PlanCheck check_plan(const PlanQuestion& question) {
             check.fit = PlanFit::no;
         else
             check.fit = is_known && flight.suffices(*flown) ? PlanFit::yes : PlanFit::perhaps;
+        const auto& uncertain = setup_of(flown->mission).uncertain;
+        if (check.fit == PlanFit::yes && !uncertain.empty()) {
+            check.fit = PlanFit::perhaps;
+            check.reason = fmt::format("{}", fmt::join(uncertain, "; "));
+        }
         if (!is_known) check.reason = "nothing shows how the power of flights differs: their probability is unknown";
     }
-    if (check.fit != PlanFit::yes && (check.probability || !check.flown.keeps_reserve))
+    const bool suffices = flown && flight.suffices(*flown);
+    if (!suffices && (check.probability || !check.flown.keeps_reserve))
         Remedies(flight, question, check).add_all(flown);
     return check;
 }

@@ -14,6 +14,7 @@ struct NewPath {
     std::vector<std::string> keys;    ///< lines of TOML, beyond the airspeed
     std::vector<std::string> chosen;  ///< what the plan leaves open: "heading_deg = 40, for the fewest turns"
     std::optional<path::PlannedSpeed> speed = {};
+    bool lands = false;  ///< at its end, where it is
 };
 
 /// What a new mission flies: a plan of QGroundControl or ArduPilot, waypoints, blocks of Paparazzi's flight plan, or an
