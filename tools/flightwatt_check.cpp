@@ -49,8 +49,7 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
     return {
         field("plan", &R::plan, "its file"),
         field("fits", &R::fit, "yes, perhaps or no"),
-        field("reason", &R::reason,
-              "why it cannot be flown, its probability is unknown, or a part is not flown; empty otherwise"),
+        field("reason", &R::reason, "why it cannot be flown, is uncertain, or a part is not flown; empty otherwise"),
         field("probability", &R::probability, "of keeping the reserve; null: unknown"),
         field("probability_interval_95", &R::probability_95, "in new flights"),
         field("probability_required", &R::probability_required, "by --probability"),
@@ -138,7 +137,7 @@ std::string answer_line(const PlanCheck& check) {
     return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required){}",
                        start, reserve, percent_text(*check.probability), percent_text(check.probability_95.low),
                        percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0),
-                       check.missing.empty() ? "" : ", without a part of the plan that is not flown");
+                       check.reason.empty() ? "" : "; but " + check.reason);
 }
 
 std::string remedy_text(const answer::PlanRemedy& remedy) {
@@ -172,8 +171,8 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
         lines.push_back({&remedy == &check.remedies.front() ? "Helps" : "", remedy_text(remedy), ""});
     for (const auto& text : check.missing)
         lines.push_back({&text == &check.missing.front() ? "Not flown" : "", text, ""});
-    const bool is_enough = check.flown.keeps_reserve && check.probability >= check.probability_required;
-    if (check.fit != PlanFit::yes && check.remedies.empty() && check.probability && !is_enough)
+    const bool is_missed = check.probability < check.probability_required || !check.flown.keeps_reserve;
+    if (is_missed && check.remedies.empty() && check.probability)
         lines.push_back({"Helps", "nothing that was tried: another airspeed, a part of the path, a larger pack", ""});
     if (!check.chosen.empty()) lines.push_back({"Chosen", fmt::format("{}", fmt::join(check.chosen, "; ")), ""});
     text += lines_text(lines, columns);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::answer {
 namespace {
@@ -290,14 +291,18 @@ PlanCheck check_plan(const PlanQuestion& question) {
         add_legs(*flown, check);
         find_failure(*flown, check);
         const bool is_known = flown->probability.has_value();
-        const bool is_sure = is_known && check.missing.empty() && flight.suffices(*flown);
+        const auto& uncertain = setup_of(flown->mission).uncertain;
+        const bool is_sure = is_known && check.missing.empty() && uncertain.empty() && flight.suffices(*flown);
         check.fit = is_sure ? PlanFit::yes : check.flown.keeps_reserve ? PlanFit::perhaps : PlanFit::no;
         if (!is_known)
             check.reason = "nothing shows how the power of flights differs: their probability is unknown";
         else if (!check.missing.empty())
             check.reason = "a part of the plan is not flown: " + check.missing.front();
+        else if (check.fit == PlanFit::perhaps && flight.suffices(*flown))
+            check.reason = fmt::format("{}", fmt::join(uncertain, "; "));
     }
-    if (!flown || (!flight.suffices(*flown) && (check.probability || !check.flown.keeps_reserve)))
+    const bool suffices = flown && flight.suffices(*flown);
+    if (!suffices && (check.probability || !check.flown.keeps_reserve))
         Remedies(flight, question, check).add_all(flown);
     return check;
 }

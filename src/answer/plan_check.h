@@ -15,7 +15,8 @@ namespace flightwatt::answer {
 /// Whether a plan fits a battery.
 enum class PlanFit {
     yes,      ///< it keeps the reserve with the probability that is asked for
-    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one, or without a movement
+    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one, or a part is uncertain or
+              ///< not flown
     no        ///< it misses it as modelled, or cannot be flown in the wind
 };
 
@@ -55,7 +56,7 @@ struct PlanRemedy {
 struct PlanCheck {
     std::string plan;
     PlanFit fit = PlanFit::no;
-    std::string reason;  ///< why it cannot be flown or its probability is unknown; may be empty
+    std::string reason;  ///< why it cannot be flown, or is uncertain; may be empty
     double probability_required = 0.0;
     std::optional<double> probability;  ///< of keeping the reserve; absent: unknown
     Interval probability_95;            ///< of new flights

@@ -79,7 +79,7 @@ BatchFit fit_flights(std::span<const mechanical::FlightSamples> flights, const m
 
 std::string fit_key(const BatchFlights& flights, const BatchFit& fit) {
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " fit 2");
+    fingerprint.add(FLIGHTWATT_VERSION " fit 3");
     fingerprint.add(fit.options.name);
     fingerprint.add(json_of(fit).dump(-1, ' ', false, Json::error_handler_t::replace));  // options and names
     for (const auto& [record, up_to_date, of_this_run, missing, other_aircraft, selection] : flights) {

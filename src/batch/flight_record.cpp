@@ -101,7 +101,7 @@ Fields<BinnedFlight> record_fields(const BinnedFlight*) {
 Fields<PhaseSamples> record_fields(const PhaseSamples*) {
     using R = PhaseSamples;
     return {field("duration_s", &R::duration_s), field("start_s", &R::start_s), field("edge_samples", &R::edge_samples),
-            field("tau", &R::tau), field("power_w", &R::power_w)};
+            field("height_m", &R::height_m),     field("tau", &R::tau),         field("power_w", &R::power_w)};
 }
 
 }  // namespace mechanical

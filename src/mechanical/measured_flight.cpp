@@ -23,6 +23,16 @@ std::string exclusion_reason(const flight::PhaseSpan& span) {
     return fmt::format("its {} is in a gap of {:.1f} s", span.start.gap_s == gap_s ? "start" : "end", gap_s);
 }
 
+/// Height above the ground that the cruise held after a take-off, or before a landing: the wings' phases end and begin
+/// at a fraction of it.
+std::optional<double> held_height_m(const flight::PhaseSpan& span, const flight::Sortie& sortie) {
+    constexpr double min_height_m = 3.0;  // below, the altitude is unknown
+    const double change_m = span.end.altitude_m - span.start.altitude_m;
+    const double flown_m = span.phase == flight::Phase::landing ? -change_m : change_m;
+    if (span.phase == flight::Phase::cruise || !(flown_m >= min_height_m)) return std::nullopt;
+    return std::clamp(sortie.height_m, flown_m, flown_m / flight::SegmentationOptions{}.cruise_fraction);
+}
+
 PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
     const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
@@ -98,6 +108,7 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
         for (const auto& span : sortie.phases) {
             const double start_s = span.start.time_s;
             auto samples = samples_of(data.power_w, span, flight.samples.flight);
+            samples.height_m = held_height_m(span, sortie);
             auto reason = exclusion_reason(span);
             const auto statistics = statistics_of_power.between(start_s, span.end.time_s);
             if (reason.empty()) flight.power[span.phase] = power_over(data.power_w, span, statistics);

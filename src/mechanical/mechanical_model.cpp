@@ -99,10 +99,18 @@ void list_variance(TomlFields& fields, VarianceComponents& spread) {
     fields.real("correlation_s", spread.correlation_s, more_than(0.0));
 }
 
+void list_heights(TomlFields& fields, PhaseHeights& heights) {
+    fields.real("mean_m", heights.mean_m, more_than(0.0));
+    fields.real("low_m", heights.low_m, more_than_up_to(0.0, heights.mean_m));
+    fields.real("high_m", heights.high_m, at_least(heights.mean_m));
+    fields.real("m_per_s", heights.m_per_s, more_than(0.0));
+}
+
 void list_phase(TomlFields& fields, PhaseModel& phase) {
     const auto* table = fields.source();
     auto& fourier = phase.fourier;
     fields.real("duration_s", phase.duration_s, more_than(0.0));
+    fields.optional_table("heights", phase.heights, list_heights);
     fields.real("omega_rad_per_s", fourier.omega_rad_per_s, more_than(0.0));
     fields.optional_table("omega_duration", phase.range, list_frequency_range);
     fields.real("a0_w", fourier.a0_w);
@@ -333,6 +341,11 @@ FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTim
     FourierModel flown = phase.fourier;
     if (clock == PhaseTimeScaling::scaled) flown.omega_rad_per_s *= phase.duration_s / flown_s;
     return flown;
+}
+
+double duration_at_height_s(const PhaseModel& phase, double height_m) {
+    const auto& heights = phase.heights.value();
+    return phase.duration_s + (std::max(height_m, heights.low_m) - heights.mean_m) / heights.m_per_s;
 }
 
 Interval student_t_interval(double value, double standard_error, double degrees_of_freedom) {

@@ -96,6 +96,14 @@ struct PowerDecision {
     std::string reason = {};  ///< empty: nothing was decided, as in published models
 };
 
+/// Heights above the ground that the take-offs of a model's flights climbed to, or their landings descended from.
+struct PhaseHeights {
+    double mean_m = 0.0;  ///< weighted as the duration
+    double low_m = 0.0;
+    double high_m = 0.0;
+    double m_per_s = 0.0;  ///< rate at which a height beyond the mean is climbed or descended
+};
+
 /// One phase of the model: the flights' weighted average (Eqs. 5-7) and its basis.
 struct PhaseModel {
     FourierModel fourier;
@@ -113,7 +121,12 @@ struct PhaseModel {
     /// Absent with fewer than 2 flights, or if published without.
     std::optional<VarianceComponents> level_spread = {};  ///< its drift is about what predicts the phase
     PowerDecision power = {};
+    std::optional<PhaseHeights> heights = {};  ///< absent of the cruise, and in files of 0.2
 };
+
+/// Returns how long a take-off to this height, or a landing from it, takes at the rate of the phase's flights; none
+/// shorter than from the least height that was flown. The phase must have heights.
+double duration_at_height_s(const PhaseModel& phase, double height_m);
 
 /// One flight's part in one phase.
 struct PhaseContribution {

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -71,6 +72,38 @@ CurveBand band_of(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis&
         band.flights_sd_w = std::move(spread->standard_deviation_w);
     }
     return band;
+}
+
+/// Heights of the flights that have one. Further height takes the time that the regression of the durations on the
+/// heights makes it, within the durations per height of the quickest flight and of the mean one.
+std::optional<PhaseHeights> heights_of(const FittedPhase& fitted) {
+    double weights = 0.0, time_s = 0.0, covariance = 0.0, variance = 0.0;
+    PhaseHeights heights{0.0, std::numeric_limits<double>::infinity(), 0.0, 0.0};
+    const auto for_each_height = [&](const auto& use) {
+        for (std::size_t i = 0; i < fitted.samples.size(); ++i)
+            if (const auto& flight = fitted.samples[i]; flight.height_m && fitted.weights[i] > 0.0)
+                use(fitted.weights[i], *flight.height_m, flight.duration_s);
+    };
+    double quickest_s_per_m = std::numeric_limits<double>::infinity();
+    for_each_height([&](double weight, double height_m, double duration_s) {
+        weights += weight;
+        heights.mean_m += weight * height_m;
+        time_s += weight * duration_s;
+        heights.low_m = std::min(heights.low_m, height_m);
+        heights.high_m = std::max(heights.high_m, height_m);
+        quickest_s_per_m = std::min(quickest_s_per_m, duration_s / height_m);
+    });
+    if (weights == 0.0) return std::nullopt;
+    heights.mean_m = std::clamp(heights.mean_m / weights, heights.low_m, heights.high_m);
+    time_s /= weights;
+    for_each_height([&](double weight, double height_m, double duration_s) {
+        covariance += weight * (height_m - heights.mean_m) * (duration_s - time_s);
+        variance += weight * std::pow(height_m - heights.mean_m, 2);
+    });
+    const double mean_s_per_m = time_s / heights.mean_m;
+    const double regression_s_per_m = variance > 0.0 ? covariance / variance : mean_s_per_m;
+    heights.m_per_s = 1.0 / std::clamp(regression_s_per_m, std::min(quickest_s_per_m, mean_s_per_m), mean_s_per_m);
+    return heights;
 }
 
 }  // namespace
@@ -132,6 +165,7 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
     fitted.model = average_phase(fitted.fit, fitted.weights);
     if (!reason.empty()) fitted.model.power = {PowerBasis::mean, std::move(reason)};
     for (const auto& samples : fitted.samples) fitted.model.edge_samples += samples.edge_samples;
+    fitted.model.heights = heights_of(fitted);
     require_finite(phase, fitted.model.fourier);
     fitted.model.level_spread = estimate_variance_components(fitted.model, fitted.samples);
     return fitted;

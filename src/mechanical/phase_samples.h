@@ -24,6 +24,8 @@ struct PhaseSamples {
     /// Samples at the phase's ends that are not among these: their power is the neighbouring phase's
     /// (count_neighbour_samples).
     std::size_t edge_samples = 0;
+    /// Height that a take-off climbed to or a landing descended from; absent of cruises, and if it is unknown.
+    std::optional<double> height_m = {};
     std::shared_ptr<const FrequencyScan> scan = {};  ///< of these samples, stored for several fits (cache_scans)
 };
 

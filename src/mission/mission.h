@@ -100,9 +100,10 @@ struct MissionSetup {
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
     Uncertainty uncertainty;
     std::optional<mechanical::HeldOutScore> power_model =
-        {};                               ///< of the model that predicts the power, if its file has a validation
-    std::vector<std::string> notes = {};  ///< warnings from reading the file
-    std::optional<Packs> packs = {};      ///< then it is divided (packs.h) before anything flies it
+        {};                                   ///< of the model that predicts the power, if its file has a validation
+    std::vector<std::string> notes = {};      ///< warnings from reading the file
+    std::vector<std::string> uncertain = {};  ///< reasons why the result may be wrong, of parts that matter
+    std::optional<Packs> packs = {};          ///< then it is divided (packs.h) before anything flies it
 };
 
 /// A mission that can be flown.

@@ -84,12 +84,24 @@ std::string start_key(const path::GeodeticPosition& home, std::string_view fligh
     return fmt::format("start = {{ east_m = {:.2f}, north_m = {:.2f} }}", east_m, north_m);
 }
 
+/// The waypoint HOME of a flight plan, as a key; empty without one.
+std::string home_key(std::string_view flight_plan, const std::string& file) {
+    try {
+        const auto home = path::parse_flight_plan(flight_plan, file, {"HOME"}).front().place;
+        if (home) return fmt::format("start = {{ east_m = {:.2f}, north_m = {:.2f} }}", home->east_m, home->north_m);
+    } catch (const InputError&) {  // no such waypoint
+    }
+    return "";
+}
+
 NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
     const auto& file = plan.file;
     auto blocks = plan.blocks;
     const auto text = read_file(file);
     const bool of_blocks = has_blocks(text);
-    const auto start = plan.home ? start_key(*plan.home, of_blocks ? text : "", file.string()) : "";
+    const auto start = plan.home   ? start_key(*plan.home, of_blocks ? text : "", file.string())
+                       : of_blocks ? home_key(text, file.string())
+                                   : "";
     if (is_area_text(text)) {
         if (!of_blocks && has(text, "<LineString"))
             throw InputError({file.string()}, "has a path (LineString) and an area (Polygon)",
@@ -105,7 +117,8 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
                          : path::read_waypoints(file, settings);
     };
     NewPath path{{fmt::format("{} = {}", of_blocks ? "flight_plan" : "waypoints", toml_string(plan.name))}, {}};
-    if (plan.home) path.keys.push_back(start);
+    if (!start.empty()) path.keys.push_back(start);
+    if (of_blocks && !plan.home && !start.empty()) path.chosen.push_back(start + ", the plan's HOME");
     if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
     path::PlanEntries entries;
     try {
@@ -119,6 +132,7 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     for (const auto& entry : entries.entries)
         if (entry.airspeed_m_per_s) path.own_m_per_s.insert(*entry.airspeed_m_per_s);
     path.speed = std::move(entries.speed);
+    path.lands = entries.ends_with_landing;
     path.missing = std::move(entries.missing);
     return path;
 }
@@ -129,6 +143,10 @@ bool is_area(const std::filesystem::path& file) { return is_area_text(read_file(
 
 NewPath path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
     auto path = open_path_of_plan(plan, airspeed_m_per_s, is_rotorcraft);
+    if (path.lands) {
+        path.chosen.emplace_back("no return to the start: the plan ends with a landing");
+        return path;
+    }
     path.keys.emplace_back("return_to_start = true");
     path.chosen.emplace_back("return_to_start = true: from its end straight back; without it, it lands where it ends");
     return path;

@@ -17,6 +17,7 @@ struct NewPath {
     std::optional<path::PlannedSpeed> speed = {};
     std::set<double> own_m_per_s = {};      ///< airspeeds that its movements state
     std::vector<std::string> missing = {};  ///< as path::PlanEntries::missing
+    bool lands = false;                     ///< at its end, where it is
 };
 
 /// What a new mission flies: a plan of QGroundControl or ArduPilot, waypoints, blocks of Paparazzi's flight plan, or an

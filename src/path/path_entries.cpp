@@ -54,7 +54,7 @@ class PathBuilder {
     std::optional<PathOrigin> origin() const {
         const auto place = origin_ ? origin_ : defaults_.local_origin;
         if (!place) return std::nullopt;
-        PathOrigin origin{*place, start_, defaults_.ground_m, start_altitude_m_};
+        PathOrigin origin{*place, start_, defaults_.ground_m, start_altitude_m_, defaults_.is_above_ground};
         if (origin.altitude_m) *origin.altitude_m -= origin.ground_m;
         return origin;
     }
@@ -208,7 +208,9 @@ class PathBuilder {
 
     /// On the spot: the place was reached already.
     void change_height(const PathEntry& entry) {
-        const auto rate = rate_of(entry);
+        auto rate = rate_of(entry);
+        if (!rate)
+            rate = change_m_ > 0.0 ? defaults_.rates_on_spot.climb_m_per_s : defaults_.rates_on_spot.descent_m_per_s;
         if (!rate) {
             refuse(entry, fmt::format("changes the altitude by {:.4g} m where the aircraft is already", change_m_),
                    "state the rate, climb_m_per_s or descent_m_per_s, or the time, hold_s");

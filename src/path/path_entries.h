@@ -67,10 +67,12 @@ struct PathDefaults {
     double airspeed_m_per_s = 0.0;
     std::optional<double> altitude_m;  ///< at the start
     ClimbRates rates;
+    ClimbRates rates_on_spot;            ///< of changes above one place, where nothing else states the rate or time
     std::optional<LocalPosition> start;  ///< absent: the origin, or the first entry if that is geographic
     std::optional<GeodeticPosition> geographic_start;
     std::optional<GeodeticPosition> local_origin;  ///< of places in metres, if it is known
     double ground_m = 0.0;                         ///< above the sea, where the altitudes are above the sea
+    bool is_above_ground = false;                  ///< what the altitudes are above is known
     bool starts_at_first_place = false;            ///< the path starts at the first place; for circles at their edge
     bool return_to_start = false;
     Location where;

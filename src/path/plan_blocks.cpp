@@ -156,9 +156,9 @@ PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, co
     return result;
 }
 
-std::pair<GeodeticPosition, double> flight_plan_origin(std::string_view text, const std::string& file) {
+std::pair<GeodeticPosition, std::optional<double>> flight_plan_origin(std::string_view text, const std::string& file) {
     const auto plan = load_flight_plan(text, file);
-    return {origin_of(plan), evaluate(plan, "ground_alt").value_or(0.0)};
+    return {origin_of(plan), evaluate(plan, "ground_alt")};
 }
 
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,

@@ -2,6 +2,7 @@
 
 #include "path/plan_files.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,8 +26,8 @@ std::vector<PlanBlock> parse_plan(std::string_view text, const std::string& file
 PlanEntries parse_plan_blocks(std::string_view text, const std::string& file, const std::vector<std::string>& blocks,
                               const AutopilotSettings& settings);
 
-/// Returns lat0 and lon0 of a Paparazzi flight plan, the origin of its places, and the altitude of its ground, or 0.
-std::pair<GeodeticPosition, double> flight_plan_origin(std::string_view text, const std::string& file);
+/// Returns lat0 and lon0 of a Paparazzi flight plan, the origin of its places, and the altitude of its ground.
+std::pair<GeodeticPosition, std::optional<double>> flight_plan_origin(std::string_view text, const std::string& file);
 
 /// Reads waypoints of a Paparazzi flight plan, in the order of the names. Throws as parse_plan_blocks.
 std::vector<PathEntry> parse_flight_plan(std::string_view text, const std::string& file,

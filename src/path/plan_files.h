@@ -31,6 +31,9 @@ struct PlanEntries {
     std::vector<std::string> not_flown = {};  ///< "line 80: the circle around STDBY has no end: it is flown once"
     std::vector<std::string> missing = {};    ///< those of `not_flown` that leave out a movement, of unknown energy
     bool starts_at_first_place = false;       ///< see PathDefaults
+    bool starts_at_home = false;              ///< the first entry is the plan's home
+    bool is_above_home = false;               ///< altitudes are above home
+    bool ends_with_landing = false;
     std::optional<PlannedSpeed> speed = {};
     PlanFence fence = {};
 };

@@ -179,6 +179,52 @@ TEST(PlanCheck, CountsTheWayFromHomeAndBack) {
     EXPECT_NEAR(check_plan(question).length_m - alone_m, 2.0 * 1111.0, 30.0);
 }
 
+/// A plan from home, with these items.
+PlanQuestion items_of(const std::string& items) {
+    const auto file = test::scratch_dir() / "q.plan";
+    test::write_text(file, R"({"fileType": "Plan", "version": 1, "mission": {"version": 2, "vehicleType": 1,
+"cruiseSpeed": 13, "plannedHomePosition": [47.0, 8.0, 100], "items": [)" +
+                               items + "]}}");
+    return question_of(file);
+}
+
+std::string item(int command, double latitude_deg, double altitude_m) {
+    return fmt::format(R"({{"type": "SimpleItem", "command": {}, "frame": 3, "params": [0, 0, 0, 0, {}, 8.0, {}]}})",
+                       command, latitude_deg, altitude_m);
+}
+
+TEST(PlanCheck, IsPerhapsAtAHeightThatTheFlightsDidNotShow) {
+    const auto at = [](double height_m) {
+        return check_plan(items_of(item(22, 47.0, height_m) + "," + item(16, 47.01, height_m)));
+    };
+    EXPECT_EQ(at(100.0).fit, PlanFit::yes);
+    const auto high = at(500.0);
+    EXPECT_EQ(high.fit, PlanFit::perhaps);
+    EXPECT_THAT(high.reason, HasSubstr("higher than the model's flights"));
+    EXPECT_THAT(high.remedies, testing::IsEmpty());
+    EXPECT_NEAR(high.flown.duration_s - at(100.0).flown.duration_s, 380.0 / 4.0 + 380.0 / 2.4, 1.0);
+}
+
+TEST(PlanCheck, DoesNotReturnFromALandingElsewhere) {
+    const auto way = item(16, 47.01, 50.0);
+    const auto there = check_plan(items_of(way + "," + item(21, 47.02, 0.0)));
+    EXPECT_NEAR(there.length_m, 2.0 * 1111.8, 20.0);
+    EXPECT_THAT(there.chosen, Contains("no return to the start: the plan ends with a landing"));
+    EXPECT_NEAR(check_plan(items_of(way)).length_m, 2.0 * 1111.8, 200.0) << "and back";
+}
+
+TEST(PlanCheck, BeginsBlocksAtTheirHome) {
+    const auto length_m = [](const std::string& home) {
+        const auto file = test::scratch_dir() / "plan.xml";
+        test::write_text(file, fmt::format(R"(<flight_plan lat0="43.46" lon0="1.27" ground_alt="185" alt="260">
+<waypoints>{}<waypoint name="1" x="0" y="1000"/><waypoint name="2" x="0" y="3000"/></waypoints>
+<blocks><block name="A"><go wp="1"/><go wp="2" from="1" hmode="route"/></block></blocks></flight_plan>)",
+                                           home));
+        return check_plan(question_of(file)).length_m;
+    };
+    EXPECT_NEAR(length_m(R"(<waypoint name="HOME" x="0" y="0"/>)") - length_m(""), 2.0 * 1000.0, 30.0);
+}
+
 TEST(PlanCheck, RefusesAPlanThatCannotBeRead) {
     const auto file = test::scratch_dir() / "empty.csv";
     test::write_text(file, "east_m,north_m\n");

@@ -78,6 +78,23 @@ TEST(MeasuredFlights, AreThePowerOfEachPhaseOnItsOwnTime) {
     EXPECT_EQ(selection.flights[0].phases[flight::Phase::landing].value().power_w.front(), 1090.0);
 }
 
+TEST(MeasuredFlights, HaveTheHeightOfTheirTakeOffAndLanding) {
+    auto sortie = whole_sortie(10);
+    sortie.height_m = 100.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+        sortie.phases[i].end.altitude_m = 590.0;  // the ends of a take-off and the start of a landing are below
+        sortie.phases[i + 1].start.altitude_m = 590.0;
+    }
+    sortie.phases.front().start.altitude_m = 500.0;
+    sortie.phases.back().end.altitude_m = 540.0;  // on a hill
+    const auto flight = select({sortie}).flights.at(0);
+    EXPECT_EQ(flight.phases[flight::Phase::takeoff]->height_m, std::optional(100.0));
+    EXPECT_FALSE(flight.phases[flight::Phase::cruise]->height_m);
+    EXPECT_NEAR(flight.phases[flight::Phase::landing]->height_m.value(), 50.0 / 0.9, 1e-9);
+    sortie.phases.back().start.altitude_m = 541.0;
+    EXPECT_FALSE(select({sortie}).flights.at(0).phases[flight::Phase::landing]->height_m) << "no landing";
+}
+
 TEST(MeasuredFlights, LieWithinEdgesBetweenTwoOfThem) {
     flight::Sortie sortie;
     sortie.phases = {span(flight::Phase::takeoff, 10.25, 30.75)};

@@ -82,6 +82,7 @@ MechanicalModel made_up_model() {
     model.phases[flight::Phase::cruise].range = FrequencyRange{3.0, 40.0};
     model.phases[flight::Phase::cruise].samples = 545;
     model.phases[flight::Phase::cruise].flights = 2;
+    model.phases[flight::Phase::takeoff].heights = PhaseHeights{50.0, 30.0, 70.0, 2.5};
     model.flights = {{"first", {}}, {"second", {}}};
     model.flights[0].phases[flight::Phase::cruise] = PhaseContribution{0.25, 580.0, 0.5, 300};
     model.flights[1].phases[flight::Phase::cruise] = PhaseContribution{0.75, 610.0, 1.0 / 3.0, 245, 25.0 / 3.0};
@@ -106,6 +107,10 @@ TEST(MechanicalModelToml, ReadsBackWhatItWrote) {
     ASSERT_TRUE(cruise.range);
     EXPECT_EQ(cruise.range->high_rad, 40.0);
     EXPECT_FALSE(again.phases[flight::Phase::takeoff].range);
+    EXPECT_FALSE(cruise.heights);
+    const auto& takeoff = again.phases[flight::Phase::takeoff];
+    EXPECT_NEAR(duration_at_height_s(takeoff, 100.0), takeoff.duration_s + 20.0, 1e-9);
+    EXPECT_NEAR(duration_at_height_s(takeoff, 10.0), takeoff.duration_s - 8.0, 1e-9) << "that of 30 m";
     ASSERT_EQ(again.flights.size(), 2U);
     EXPECT_EQ(again.flights[1].flight, "second");
     EXPECT_FALSE(again.flights[1].phases[flight::Phase::takeoff]);

@@ -57,6 +57,30 @@ TEST(ModelFit, RegeneratesThePublishedModel) {
     }
 }
 
+/// Heights of the take-offs of flights that climbed to 30, 50 and 70 m in these times.
+PhaseHeights heights_of(const std::vector<double>& durations_s) {
+    auto flights = made_up_flights(3, 0.1, 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto& takeoff = *flights[i].phases[flight::Phase::takeoff];
+        takeoff.duration_s = durations_s[i];
+        takeoff.height_m = 30.0 + 20.0 * static_cast<double>(i);
+    }
+    const auto model = fit_model(flights, {.weighting = Weighting::uniform}).model;
+    EXPECT_FALSE(model.phases[flight::Phase::cruise].heights);
+    return model.phases[flight::Phase::takeoff].heights.value();
+}
+
+TEST(ModelFit, FindsTheRateOfFurtherHeight) {
+    const auto heights = heights_of({20.0, 26.0, 32.0});
+    EXPECT_NEAR(heights.mean_m, 50.0, 1e-9);
+    EXPECT_EQ(heights.low_m, 30.0);
+    EXPECT_EQ(heights.high_m, 70.0);
+    EXPECT_NEAR(heights.m_per_s, 70.0 / 32.0, 1e-9) << "no faster than the quickest flight from the ground";
+    EXPECT_NEAR(heights_of({15.0, 25.0, 35.0}).m_per_s, 2.0, 1e-9);
+    EXPECT_NEAR(heights_of({35.0, 25.0, 15.0}).m_per_s, 70.0 / 15.0, 1e-9) << "times that fall with the height";
+    EXPECT_NEAR(heights_of({10.0, 25.0, 50.0}).m_per_s, 50.0 / (85.0 / 3.0), 1e-9) << "no slower than their mean";
+}
+
 TEST(ModelFit, RegeneratesEveryCoefficientOfExactFlights) {
     const auto published = test::published_model();
     const auto model = fit_model(made_up_flights(4, 0.0, 1)).model;

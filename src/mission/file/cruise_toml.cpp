@@ -3,6 +3,7 @@
 #include "base/input_file.h"
 #include "mission/file/named_file.h"
 #include "mission/file/planning_toml.h"
+#include "mission/file/takeoff_height.h"
 #include "mission/planning/survey_layouts.h"
 #include "path/area.h"
 #include "path/cruise_path.h"
@@ -17,7 +18,6 @@
 #include <cmath>
 #include <functional>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -311,7 +311,10 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
     const auto file = named_file(path, "flight_plan");
     const auto text = read_file(file);
     try {
-        std::tie(defaults.local_origin, defaults.ground_m) = path::flight_plan_origin(text, file.string());
+        const auto [origin, ground_m] = path::flight_plan_origin(text, file.string());
+        defaults.local_origin = origin;
+        defaults.ground_m = ground_m.value_or(0.0);
+        defaults.is_above_ground = ground_m.has_value();
     } catch (const InputError&) {  // it states none: its places are metres alone
     }
     if (path.has("waypoint_order"))
@@ -333,6 +336,8 @@ path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaul
     for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
     auto& entries = plan.entries;
     defaults.starts_at_first_place = plan.starts_at_first_place;
+    if (plan.is_above_home) defaults.is_above_ground = true;
+    if (plan.starts_at_home && (defaults.start || defaults.geographic_start)) entries.erase(entries.begin());
     const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
     if (!defaults.altitude_m && first != entries.end()) defaults.altitude_m = first->altitude_m;
     std::size_t number = 0;
@@ -410,6 +415,35 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
     return limits;
 }
 
+/// Rates of the model's take-offs and landings, else the highest that were flown.
+path::ClimbRates flown_rates(const mechanical::MechanicalModel& model) {
+    path::ClimbRates rates;
+    if (const auto& physical = model.physical) {
+        if (physical->climb_m_per_s.high > 0.0) rates.climb_m_per_s = physical->climb_m_per_s.high;
+        if (physical->climb_m_per_s.low < 0.0) rates.descent_m_per_s = -physical->climb_m_per_s.low;
+    }
+    if (const auto& up = model.phases[Phase::takeoff].heights) rates.climb_m_per_s = up->m_per_s;
+    if (const auto& down = model.phases[Phase::landing].heights) rates.descent_m_per_s = down->m_per_s;
+    return rates;
+}
+
+/// Notes the first change of height above one place that has its rate from the model.
+void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission) {
+    for (const auto& element : path.elements) {
+        const auto* hold = std::get_if<path::Hold>(&element.shape);
+        const double change_m = element.altitude_change_m;
+        const double rate = (change_m > 0.0 ? rates.climb_m_per_s : rates.descent_m_per_s).value_or(0.0);
+        if (hold == nullptr || change_m == 0.0 || element.climb_rate_m_per_s ||
+            hold->time_s != std::abs(change_m) / rate)
+            continue;
+        mission.notes.push_back(
+            fmt::format("path: {}: {:.0f} m of height above one place are flown at {:.2g} m/s, as "
+                        "the model's flights did",
+                        element.name, std::abs(change_m), rate));
+        return;
+    }
+}
+
 /// The path as it is drawn, and where it is.
 path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
@@ -423,11 +457,13 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
     auto defaults = read_defaults(table, mission);
     auto planned = read_entries(table, defaults, mission);
     auto& entries = planned.entries;
+    if (mission.mechanical) defaults.rates_on_spot = flown_rates(*mission.mechanical);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
     path::PlannedPath plan;
     plan.path = build_path(entries, defaults);
     plan.origin = path_origin(entries, defaults);
+    note_rate_on_spot(plan.path, defaults.rates_on_spot, mission);
     if (plan.origin)
         for (const auto& note : fence_notes(planned.fence, plan.path, *plan.origin))
             mission.notes.push_back("path: " + note);
@@ -542,6 +578,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (is_physical)
         for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));
+    set_takeoff_and_landing(mission);
 }
 
 }  // namespace flightwatt::mission

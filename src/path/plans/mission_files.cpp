@@ -31,7 +31,7 @@ struct MissionItem {
 };
 
 struct MissionItems {
-    std::array<double, 3> home = {};  ///< latitude, longitude and altitude above the sea, or NaN
+    std::array<double, 3> home{std::nan(""), std::nan(""), std::nan("")};  ///< latitude, longitude, altitude above sea
     std::vector<MissionItem> items;
     Location where;
     std::optional<PlannedSpeed> speed = {};
@@ -98,7 +98,9 @@ class ItemReader {
             case nav_land:
             case nav_vtol_land:
                 report(item, "the way to the landing is flown level; the descent is the mission's landing");
-                return fly_level_to(item);
+                fly_level_to(item);
+                landed_after_ = entries_.size();
+                return;
             case change_speed:
                 return set_speed(item);
             case vtol_transition:
@@ -122,13 +124,15 @@ class ItemReader {
     void report_missing(const MissionItem& item, const std::string& text) { report(item, text, true); }
 
     PlanEntries finish(const Location& where) {
-        if (home_ && !entries_.empty() && !takes_off_) {  // a plan without a take-off is flown from home, too
+        const bool lands = landed_after_ == entries_.size();
+        const bool starts_at_home = home_ && !entries_.empty() && !is_at_home(entries_.front());
+        if (starts_at_home) {
             entries_.insert(entries_.begin(), PathEntry{});
             entries_.front().name = "home";
             entries_.front().where = where;
             entries_.front().geographic = home_;
         }
-        PlanEntries plan{std::move(entries_), {}, {}, true, speed_};
+        PlanEntries plan{std::move(entries_), {}, {}, true, starts_at_home, true, lands, speed_};
         for (const auto& [text, items] : reports_) {
             const auto more = items.names.size() - 1;
             plan.not_flown.push_back(
@@ -141,6 +145,14 @@ class ItemReader {
     }
 
   private:
+    /// Whether it is a take-off at home, as far as a ground station places it.
+    bool is_at_home(const PathEntry& entry) const {
+        constexpr double near_m = 10.0;
+        if (!takes_off_ || !entry.geographic) return false;
+        const auto from_home = to_local(*entry.geographic, *home_);
+        return std::hypot(from_home.east_m, from_home.north_m) <= near_m;
+    }
+
     PathEntry entry_of(const MissionItem& item) const {
         PathEntry entry;
         entry.name = round_ == 1 ? item.name : fmt::format("{}, round {}", item.name, round_);
@@ -160,7 +172,11 @@ class ItemReader {
     std::optional<double> altitude_of(const MissionItem& item) {
         const double altitude_m = item.parameters[6];
         if (std::isnan(altitude_m) || item.frame == 2) return std::nullopt;  // 2: a command without a place
-        if (item.frame == 0 || item.frame == 5) return altitude_m - home_altitude_m_;
+        if (item.frame == 0 || item.frame == 5) {
+            if (home_altitude_m_) return altitude_m - *home_altitude_m_;
+            report(item, "the altitude above the sea is not flown, as the plan does not state that of home");
+            return std::nullopt;
+        }
         if (item.frame == 10 || item.frame == 11)
             report(item, "the altitude above the terrain is flown as one above home");
         else if (item.frame != 3 && item.frame != 6)
@@ -251,9 +267,10 @@ class ItemReader {
     const AutopilotSettings& settings_;
     std::optional<GeodeticPosition> home_;
     std::optional<PlannedSpeed> speed_;
-    double home_altitude_m_ = 0.0;
-    bool takes_off_ = false;  ///< an item states where
-    std::size_t round_ = 1;   ///< of the item
+    std::optional<double> home_altitude_m_;
+    bool takes_off_ = false;                   ///< an item states where
+    std::optional<std::size_t> landed_after_;  ///< so many entries
+    std::size_t round_ = 1;                    ///< of the item
     std::optional<double> airspeed_m_per_s_;
     std::vector<PathEntry> entries_;
     std::map<std::string, ReportedItems> reports_;
@@ -503,10 +520,12 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
     for (std::size_t number = 2; std::getline(lines, line); ++number) {
         const auto values = item_numbers(line, {file, number});
         if (values.empty()) continue;
-        if (mission.where.line == 0) {  // the first item is home
+        if (mission.where.line == 0) {  // the first item is home, except in files of PX4
             mission.where = {file, number};
-            std::copy_n(values.begin() + 8, mission.home.size(), mission.home.begin());
-            continue;
+            if (values[3] == nav_waypoint) {
+                std::copy_n(values.begin() + 8, mission.home.size(), mission.home.begin());
+                continue;
+            }
         }
         MissionItem item{static_cast<int>(std::clamp(values[3], -1.0, 1e6)),
                          static_cast<int>(std::clamp(values[2], -1.0, 1e6)),

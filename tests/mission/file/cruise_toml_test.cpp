@@ -17,6 +17,10 @@ namespace {
 using test::rejected;
 using test::scratch_dir;
 using test::write_text;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 std::filesystem::path folder_with_opterra() {
     auto folder = scratch_dir();
@@ -281,6 +285,68 @@ TEST(PathToml, FliesThePlansSpeedWhereItStatesNone) {
     EXPECT_NE(rejected([&] { read(folder, "wing.toml", "[path]\nwaypoints = \"w.csv\"\n"); }, folder)
                   .find("airspeed_m_per_s"),
               std::string::npos);
+}
+
+/// A plan that flies north at this altitude above home and descends there to another.
+std::string plan_at(double altitude_m, double last_m) {
+    return fmt::format(R"({{"fileType": "Plan", "version": 1, "mission": {{"version": 2, "vehicleType": 1,
+"cruiseSpeed": 13, "plannedHomePosition": [47.0, 8.0, 100], "items": [
+{{"type": "SimpleItem", "command": 22, "frame": 3, "params": [0, 0, 0, 0, 0, 0, {0}]}},
+{{"type": "SimpleItem", "command": 16, "frame": 3, "params": [0, 0, 0, 0, 47.02, 8.0, {0}]}},
+{{"type": "SimpleItem", "command": 31, "frame": 3, "params": [0, 0, 0, 0, 47.02, 8.0, {1}]}}]}}}})",
+                       altitude_m, last_m);
+}
+
+/// Take-offs climbed to 40 to 60 m, and further height at 4 m/s; landings at 2 m/s.
+std::filesystem::path folder_with_heights() {
+    auto folder = path_folder();
+    auto model = mechanical::read_mechanical_model(folder / "wing.toml");
+    model.phases[Phase::takeoff].heights = mechanical::PhaseHeights{50.0, 40.0, 60.0, 4.0};
+    model.phases[Phase::landing].heights = mechanical::PhaseHeights{50.0, 40.0, 60.0, 2.0};
+    write_wing(model, folder / "heights.toml");
+    return folder;
+}
+
+TEST(PathToml, ClimbsToThePlansAltitudeAndDescendsFromIt) {
+    const auto folder = folder_with_heights();
+    const std::string path = "[path]\nwaypoints = \"q.plan\"\n";
+    const auto at = [&](double altitude_m, double last_m, const std::string& keys = "",
+                        const std::string& model = "heights.toml") {
+        write_text(folder / "q.plan", plan_at(altitude_m, last_m));
+        return read(folder, model, keys + path).setup;
+    };
+    const auto flown = at(50.0, 50.0);
+    const auto& model = *flown.mechanical;
+    EXPECT_DOUBLE_EQ(flown.duration_s[Phase::takeoff], model.phases[Phase::takeoff].duration_s);
+    EXPECT_DOUBLE_EQ(flown.duration_s[Phase::landing], model.phases[Phase::landing].duration_s);
+    EXPECT_THAT(flown.notes, Not(Contains(HasSubstr("take-off: "))));
+    const auto high = at(110.0, 80.0);
+    EXPECT_NEAR(high.duration_s[Phase::takeoff] - flown.duration_s[Phase::takeoff], 60.0 / 4.0, 1e-9);
+    EXPECT_NEAR(high.duration_s[Phase::landing] - flown.duration_s[Phase::landing], 30.0 / 2.0, 1e-9);
+    EXPECT_THAT(high.notes, Contains(HasSubstr("take-off: 43 s to 110 m; the model's flights climbed to 40 to 60 m")));
+    EXPECT_THAT(high.notes, Contains(HasSubstr("landing: ")));
+    EXPECT_NEAR(flown.duration_s[Phase::takeoff] - at(10.0, 10.0).duration_s[Phase::takeoff], 10.0 / 4.0, 1e-9)
+        << "no lower than flown";
+    const auto stated = at(110.0, 80.0, "duration_s = { takeoff = 20 }\n");
+    EXPECT_EQ(stated.duration_s[Phase::takeoff], 20.0);
+    EXPECT_DOUBLE_EQ(stated.duration_s[Phase::landing], high.duration_s[Phase::landing]);
+    EXPECT_TRUE(flown.uncertain.empty());
+    EXPECT_THAT(at(1000.0, 1000.0).uncertain, ElementsAre(HasSubstr("higher than the model's flights flew")));
+    EXPECT_THAT(at(1000.0, 1000.0, "", "wing.toml").uncertain, ElementsAre(HasSubstr("fit it again")));
+    EXPECT_THAT(at(50.0, 50.0, "", "wing.toml").notes, Contains(HasSubstr("120 m are assumed")));
+}
+
+TEST(PathToml, ChangesItsHeightAboveOnePlaceAtTheModelsRates) {
+    const auto folder = folder_with_heights();
+    const auto circling = [&](double last_m) {
+        write_text(folder / "q.plan", plan_at(90.0, last_m));
+        return read(folder, "heights.toml", "[path]\nwaypoints = \"q.plan\"\n").setup;
+    };
+    const auto down = circling(40.0);
+    EXPECT_NEAR(down.duration_s[Phase::cruise] - circling(90.0).duration_s[Phase::cruise], 50.0 / 2.0, 1e-6);
+    EXPECT_THAT(down.notes, Contains("path: item 3: 50 m of height above one place are flown at 2 m/s, as the model's "
+                                     "flights did"));
+    EXPECT_THAT(circling(90.0).notes, Not(Contains(HasSubstr("above one place"))));
 }
 
 TEST(PathToml, FliesWaypointsOfALogWithWhateverElseThePathStates) {

@@ -231,6 +231,53 @@ TEST(MissionFiles, NameMovementsThatAreMissing) {
     EXPECT_EQ(missing_of(item(201, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), Texts{}) << "a camera's target";
 }
 
+TEST(MissionFiles, BeginAtHomeAlsoWithATakeOffElsewhere) {
+    const auto from = [](const std::string& takeoff) {
+        return parse_qgc_plan(qgc(item(22, 3, takeoff) + "," + item(16, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), "q.plan",
+                              {});
+    };
+    const auto far = from("0, 0, 0, 0, 47.03, 8.0, 50");
+    ASSERT_EQ(far.entries.size(), 3U);
+    EXPECT_TRUE(far.starts_at_home);
+    EXPECT_DOUBLE_EQ(far.entries[0].geographic->latitude_deg, 47.0);
+    EXPECT_FALSE(far.entries[0].altitude_m);
+    EXPECT_EQ(far.entries[1].altitude_m, std::optional(50.0));
+    for (const auto* near : {"0, 0, 0, 0, 47.00005, 8.0, 50", "0, 0, 0, 0, 0, 0, 50"}) {
+        EXPECT_EQ(from(near).entries.size(), 2U) << near;
+        EXPECT_FALSE(from(near).starts_at_home) << near;
+    }
+}
+
+TEST(MissionFiles, EndWithALandingOnlyIfNothingFollows) {
+    const auto way = item(16, 3, "0, 0, 0, 0, 47.001, 8.0, 60");
+    const auto landing = item(21, 3, "0, 0, 0, 0, 47.03, 8.0, 0");
+    EXPECT_TRUE(parse_qgc_plan(qgc(way + "," + landing), "q.plan", {}).ends_with_landing);
+    EXPECT_FALSE(parse_qgc_plan(qgc(way), "q.plan", {}).ends_with_landing);
+    EXPECT_FALSE(parse_qgc_plan(qgc(landing + "," + way), "q.plan", {}).ends_with_landing);
+}
+
+TEST(MissionFiles, FlyNoAltitudeAboveTheSeaIfThatOfHomeIsUnknown) {
+    auto text = qgc(item(22, 3, "0, 0, 0, 0, 0, 0, 50") + "," + item(16, 0, "0, 0, 0, 0, 47.001, 8.0, 170"));
+    text.replace(text.find(", 100]"), 6, ", null]");
+    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 2U);
+    EXPECT_FALSE(plan.entries[1].altitude_m);
+    EXPECT_EQ(plan.not_flown,
+              std::vector<std::string>{
+                  "item 2: the altitude above the sea is not flown, as the plan does not state that of home"});
+}
+
+TEST(MissionFiles, OfPx4HaveNoHome) {
+    const auto plan = parse_wpl(
+        "QGC WPL 110\n0\t1\t3\t22\t15\t0\t0\t0\t47.0\t8.0\t50\t1\n"
+        "1\t0\t3\t16\t0\t0\t0\t0\t47.001\t8\t60\t1\n",
+        "w.waypoints", {});
+    ASSERT_EQ(plan.entries.size(), 2U);
+    EXPECT_FALSE(plan.starts_at_home);
+    EXPECT_EQ(plan.entries[0].altitude_m, std::optional(50.0));
+    EXPECT_EQ(plan.entries[1].altitude_m, std::optional(60.0));
+}
+
 TEST(MissionFiles, OfBrokenPlansAreErrors) {
     const auto refusal = [](const std::string& text) { return rejected([&] { parse_qgc_plan(text, "q.plan", {}); }); };
     EXPECT_EQ(refusal("{\n1"), "q.plan:2: is not JSON; expected a plan of QGroundControl");

@@ -1,0 +1,78 @@
+#include "mission/file/takeoff_height.h"
+
+#include "base/units.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace flightwatt::mission {
+namespace {
+
+constexpr double assumed_m = 120.0;        // the legal limit: most flights of earlier files climbed to less
+constexpr double noted_s = 1.0;            // longer or shorter than the model's phase
+constexpr double uncertain_percent = 5.0;  // of the energy
+
+/// Of a model's phase, as if all of it were flown to one height if its file states none.
+mechanical::PhaseModel with_heights(mechanical::PhaseModel phase) {
+    if (!phase.heights)
+        phase.heights = mechanical::PhaseHeights{assumed_m, assumed_m, assumed_m, assumed_m / phase.duration_s};
+    return phase;
+}
+
+/// "take-off: 62 s to 120 m; the model's flights climbed to 24 to 74 m, on average in 21 s".
+std::string duration_note(Phase phase, double height_m, double duration_s, const mechanical::PhaseModel& model) {
+    const bool is_up = phase == Phase::takeoff;
+    const auto note =
+        fmt::format("{}: {:.0f} s {} {:.0f} m", phase_word(phase), duration_s, is_up ? "to" : "from", height_m);
+    if (!model.heights) return fmt::format("{} instead of the model's {:.0f} s", note, model.duration_s);
+    const auto& [mean_m, low_m, high_m, m_per_s] = *model.heights;
+    const auto range = low_m == high_m ? fmt::format("{:.0f}", high_m) : fmt::format("{:.0f} to {:.0f}", low_m, high_m);
+    return fmt::format("{}; the model's flights {} {} m, on average in {:.0f} s", note,
+                       is_up ? "climbed to" : "descended from", range, model.duration_s);
+}
+
+}  // namespace
+
+void set_takeoff_and_landing(MissionSetup& mission) {
+    const auto& plan = *mission.cruise_path->plan;
+    if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return;
+    PerPhase<double> height_m;
+    height_m[Phase::takeoff] = height_m[Phase::landing] = *plan.origin->altitude_m;
+    for (const auto& element : plan.path.elements) height_m[Phase::landing] += element.altitude_change_m;
+    double energy_j = path::energy_j(*mission.cruise_path);
+    double uncertain_j = 0.0;
+    bool is_known = true;
+    for (const auto phase : {Phase::takeoff, Phase::landing}) {
+        const auto& model = mission.mechanical->phases[phase];
+        const double mean_w = mechanical::energy_j(model.fourier, model.duration_s) / model.duration_s;
+        auto& duration_s = mission.duration_s[phase];
+        if (mission.duration_is_stated[phase]) {
+            energy_j += mean_w * duration_s;
+            continue;
+        }
+        const auto flown = with_heights(model);
+        const double to_m = height_m[phase];
+        duration_s = duration_at_height_s(flown, to_m);
+        if (std::abs(duration_s - model.duration_s) >= noted_s)
+            mission.notes.push_back(duration_note(phase, to_m, duration_s, model));
+        energy_j += mean_w * duration_s;
+        uncertain_j += mean_w * std::max(0.0, duration_s - duration_at_height_s(flown, flown.heights->high_m));
+        if (model.heights) continue;
+        is_known = false;
+        uncertain_j += mean_w * model.duration_s * std::clamp(to_m / assumed_m, 0.0, 1.0);
+    }
+    if (!is_known)
+        mission.notes.push_back(fmt::format(
+            "take-off and landing: the model does not state how high its flights climbed, {:.0f} m are assumed: fit it "
+            "again",
+            assumed_m));
+    const double percent = units::percentage(uncertain_j, energy_j);
+    if (percent < uncertain_percent) return;
+    mission.uncertain.push_back(fmt::format(
+        "{:.0f} % of the energy is of a climb and a descent that {}", percent,
+        is_known ? "are higher than the model's flights flew" : "the model's file may not cover: fit it again"));
+}
+
+}  // namespace flightwatt::mission
