@@ -89,8 +89,10 @@ resistance shows the pack's state of health. Flights whose current was computed 
         options, arguments.identification.capacity_ah,
         "the pack's capacity, compared with the flights' estimate; default: the charge that a flight drew from full to "
         "empty, or else an estimate from the usual charts of lithium cells");
-    options.add("cells", arguments.identification.cells, {.value = "N", .min = 1, .max = 24},
-                "cells in series, checked against the voltage at rest; default: by the highest resting voltage");
+    options.add(
+        "cells", arguments.identification.cells, {.value = "N", .min = 1, .max = 24},
+        "cells in series, checked against the voltage at rest; default: as the logs state, or by the highest resting "
+        "voltage");
     options.add("circuit", arguments.circuit, {.value = "N", .min = 1, .max = 16},
                 "of a vehicle with circuits of different voltages, as segment lists them; default: the one with the "
                 "most energy");

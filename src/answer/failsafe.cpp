@@ -388,6 +388,10 @@ FailsafeCard make_failsafe_card(const FailsafeRequest& request) {
     }
     if (fleet.pack.thevenin) card.empty_voltage_v = loaded_voltage_v(fleet.pack, 0.0, fleet.cruise_w);
     card.grounds = grounds_of(request, way, fleet, reserve_percent);
+    card.monitors = describe_monitors(request.battery);
+    if (!card.monitors.empty())
+        card.grounds.push_back(
+            {request.battery.monitors.front().part > 0.0 ? Ground::measured : Ground::assumption, card.monitors});
     return card;
 }
 

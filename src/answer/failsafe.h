@@ -98,6 +98,7 @@ struct FailsafeCard {
     std::optional<double> lands_short;      ///< chance that the critical action ends the return; absent: unknown
     std::optional<double> empty_voltage_v;  ///< of the empty pack under cruise current; absent for a constant voltage
     std::vector<GroundedPart> grounds;
+    std::string monitors = {};  ///< see battery::describe_monitors
 };
 
 /// Computes the card. Without a distance, an airspeed or a wind in which the way home can be flown, `low` is absent and

@@ -51,7 +51,8 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
             const double start_s = span.start.time_s;
             const double end_s = span.end.time_s;
             facts.push_back({data.flight, end_s - start_s, mean_between(data.ground_speed_m_per_s, start_s, end_s),
-                             farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s)});
+                             farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s),
+                             data.monitors});
         }
     return facts;
 }

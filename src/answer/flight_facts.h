@@ -17,6 +17,7 @@ struct FlightFacts {
     std::optional<double> farthest_m = {};            ///< from where the log's positions begin
     std::optional<double> stated_capacity_ah = {};    ///< of the pack, by the log's parameters
     std::optional<double> mean_voltage_v = {};        ///< of the cruise
+    std::vector<flight::MonitorShare> monitors = {};  ///< see FlightData
 };
 
 /// Returns the facts of each cruise of a log.

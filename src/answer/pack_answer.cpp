@@ -36,6 +36,10 @@ FoundPack constant_pack(const std::string& reason, const CapacityChoice& capacit
     pack.battery.name = "pack";
     pack.battery.voltage_v = *voltage_v;
     pack.battery.capacity_ah = *capacity.value_ah;
+    std::vector<std::vector<flight::MonitorShare>> monitors;
+    monitors.reserve(facts.size());
+    for (const auto& flight : facts) monitors.push_back(flight.monitors);
+    pack.battery.monitors = battery::common_monitors(monitors);
     pack.answer.capacity_ah = known(*capacity.value_ah, capacity.basis);
     pack.answer.resistance_ohm = unknown(reason);
     pack.warnings.push_back(

@@ -2,13 +2,16 @@
 
 #include "base/error.h"
 #include "base/piecewise_linear.h"
+#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::battery {
 namespace {
@@ -30,6 +33,42 @@ double current_at_a(const Battery& battery, double voltage_v, double power_w) {
 }
 
 }  // namespace
+
+std::vector<flight::MonitorShare> common_monitors(const std::vector<std::vector<flight::MonitorShare>>& flights) {
+    constexpr double same_part = 0.05;
+    constexpr double written_parts = 1000.0;
+    std::map<int, std::vector<double>> parts;
+    for (const auto& monitors : flights) {
+        if (monitors.empty()) parts[1].push_back(1.0);
+        for (const auto& [number, part] : monitors) parts[number].push_back(part);
+    }
+    if (parts.empty() || (parts.size() == 1 && parts.begin()->first == 1)) return {};
+    std::vector<flight::MonitorShare> common;
+    bool are_known = true;
+    for (const auto& [number, values] : parts) {
+        const auto [low, high] = std::ranges::minmax(values);
+        are_known = are_known && values.size() == flights.size() && low > 0.0 && high - low <= same_part;
+        common.push_back({number, std::round(mean(values) * written_parts) / written_parts});
+    }
+    if (!are_known)
+        for (auto& monitor : common) monitor.part = 0.0;
+    return common;
+}
+
+std::string describe_monitors(const Battery& battery) {
+    const auto& monitors = battery.monitors;
+    if (monitors.empty()) return "";
+    if (monitors.size() == 1) return fmt::format("pack: on battery monitor {}", monitors.front().number);
+    std::vector<std::string> parts;
+    parts.reserve(monitors.size());
+    const bool are_known = monitors.front().part > 0.0;
+    for (const auto& [number, part] : monitors) {
+        parts.push_back(fmt::format("battery monitor {}", number));
+        if (are_known) parts.back() += fmt::format(" counts {:.1f} %", part * units::percent_per_whole);
+    }
+    return fmt::format("packs: the charge is that of all together, of which {}{}", fmt::join(parts, " and "),
+                       are_known ? "" : " count parts that are not known, as the flights differ");
+}
 
 double full_energy_wh(const Battery& battery) {
     if (!battery.thevenin) return battery.capacity_ah * battery.voltage_v;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/statistics.h"
+#include "flight/flight_data.h"
 
 #include <cstddef>
 #include <memory>
@@ -64,7 +65,12 @@ struct Battery {
     BatteryIntervals intervals = {};
     std::optional<int> cells = std::nullopt;                          ///< in series
     std::shared_ptr<const FlightEstimate> flight_estimate = nullptr;  ///< of a Thévenin circuit; drawn flights share it
+    std::vector<flight::MonitorShare> monitors = {};  ///< of packs in parallel; empty: the first counts all
 };
+
+/// The battery monitors of flights, each with its mean part of the charge; the parts are unknown where flights differ by
+/// more than 5 points, or have other monitors. Empty where the first monitor counts all.
+std::vector<flight::MonitorShare> common_monitors(const std::vector<std::vector<flight::MonitorShare>>& flights);
 
 /// The fall of ln R a kelvin as a lithium pack warms: 0.015 to 0.045.
 inline constexpr double resistance_fall_per_k = 0.03;
@@ -74,6 +80,10 @@ struct BatteryState {
     double soc_percent = 100.0;
     double rc_voltage_v = 0.0;  ///< across the RC pair; 0 at rest
 };
+
+/// "packs: the charge is that of all together, of which battery monitor 1 counts 55.0 % and ..."; empty where the first
+/// monitor counts all.
+std::string describe_monitors(const Battery& battery);
 
 /// [Wh] of a full battery at rest: capacity times the mean of the open-circuit voltage over its charge.
 double full_energy_wh(const Battery& battery);

@@ -2,10 +2,13 @@
 
 #include "base/error.h"
 #include "base/toml_fields.h"
+#include "base/units.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -17,6 +20,7 @@ constexpr double min_time_constant_s = 0.1;
 constexpr double max_time_constant_s = 1e5;
 constexpr double max_number = 1e6;  // squared and divided, values below stay numbers
 constexpr int max_cells = 100;
+constexpr int max_monitors = 100;
 
 void require_curve(const TomlTable& table, const OpenCircuitVoltage& curve) {
     const auto& soc = curve.soc_percent;
@@ -140,6 +144,36 @@ void list_cells(TomlFields& fields, std::optional<int>& cells) {
     cells = static_cast<int>(count);
 }
 
+/// Lists the battery monitors, and the parts of the charge that they count, if known [%].
+void list_monitors(TomlFields& fields, std::vector<flight::MonitorShare>& monitors) {
+    if (!fields.has("monitors", !monitors.empty())) return;
+    const auto* table = fields.source();
+    const auto numbers = table == nullptr ? std::vector<double>{} : table->numbers("monitors");
+    constexpr double written_steps = 1000.0;  // of a percent
+    std::vector<std::size_t> written;
+    std::vector<double> percent;
+    for (const auto& [number, part] : monitors) {
+        written.push_back(static_cast<std::size_t>(number));
+        if (part > 0.0) percent.push_back(std::round(part * units::percent_per_whole * written_steps) / written_steps);
+    }
+    if (table == nullptr) fields.counts("monitors", written);
+    if (fields.has("monitor_percent", !percent.empty())) fields.reals("monitor_percent", percent);
+    if (table == nullptr) return;
+    for (const double number : numbers)
+        if (!(number >= 1.0 && number <= max_monitors && number == std::floor(number)))
+            throw InputError(table->where("monitors"), fmt::format("monitors: {:g} is no number of one", number),
+                             "expected BATT: 1, BATT2: 2 ...");
+    const bool are_parts = percent.size() == numbers.size() &&
+                           std::ranges::all_of(percent, [](double part) { return part > 0.0; }) &&
+                           std::abs(std::accumulate(percent.begin(), percent.end(), 0.0) - 100.0) <= 1.0;
+    if (!percent.empty() && !are_parts)
+        throw InputError(table->where("monitor_percent"), "monitor_percent does not divide 100 % among the monitors",
+                         "expected one number above 0 for each");
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        monitors.push_back(
+            {static_cast<int>(numbers[i]), percent.empty() ? 0.0 : percent[i] / units::percent_per_whole});
+}
+
 void list_battery(TomlFields& fields, Battery& battery) {
     if (fields.has("name", true)) fields.text("name", battery.name);
     list_circuit_name(fields, battery);
@@ -147,6 +181,7 @@ void list_battery(TomlFields& fields, Battery& battery) {
     fields.real("capacity_ah", battery.capacity_ah, more_than_up_to(0.0, max_capacity_ah), capacity_hint);
     fields.real("resistance_ohm", battery.resistance_ohm, at_least(0.0));
     list_cells(fields, battery.cells);
+    list_monitors(fields, battery.monitors);
     if (battery.thevenin) list_thevenin(fields, battery);
     if (fields.has("intervals", has_interval(battery.intervals))) {
         fields.line("\n# 95 %");

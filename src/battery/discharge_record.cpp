@@ -127,6 +127,8 @@ void fill_record(const flight::FlightData& data, const PackRecord& part, Dischar
     mark_used(part.throttle_percent, record);
     add_rest(data, record);
     record.resolution_v = min_difference(record.voltage_v);
+    record.stated_cells = data.stated_cells;
+    record.monitors = data.monitors;
     const auto temperature_c = resample(data.air_temperature_c, record.time_s);
     if (!temperature_c.empty()) record.air_temperature_c = mean(temperature_c);
     const auto battery_c = resample(data.battery_temperature_c, record.time_s);

@@ -25,6 +25,8 @@ struct DischargeRecord {
     double resolution_v = 0.0;                    ///< minimum difference between two voltages
     std::size_t rest_samples = 0;                 ///< before the first load
     bool is_other_pack = false;                   ///< than the record before it of the same log
+    std::optional<int> stated_cells;              ///< in series, by the log
+    std::vector<flight::MonitorShare> monitors;   ///< see FlightData
     std::optional<double> air_temperature_c;      ///< mean over the record
     std::optional<double> battery_temperature_c;  ///< likewise
     std::optional<double> battery_start_c;        ///< its temperature at the first load

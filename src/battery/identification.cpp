@@ -13,9 +13,11 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::battery {
 namespace {
@@ -165,8 +167,33 @@ struct IdentificationResult {
     CurveEnd end;
 };
 
-int cells_of(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
-    return options.cells.value_or(lipo_cells(fullest_of(records).resting_voltage_v));
+/// The number of cells, and where it is from.
+struct CellChoice {
+    int cells = 0;
+    bool is_given = false;
+    std::string warning = {};
+};
+
+CellChoice choose_cells(std::span<const DischargeRecord> records, const IdentificationOptions& options) {
+    if (options.cells) return {*options.cells, true};
+    std::set<int> stated;
+    for (const auto& record : records)
+        if (record.stated_cells) stated.insert(*record.stated_cells);
+    const double rest_v = fullest_of(records).resting_voltage_v;
+    const int usual = lipo_cells(rest_v);
+    if (stated.empty()) return {usual, false};
+    const auto states = fmt::format("the logs state {} cells", fmt::join(stated, " and "));
+    if (stated.size() > 1)
+        return {usual, false, fmt::format("{}: {} are assumed; --cells states the number", states, usual)};
+    const int cells = *stated.begin();
+    if (!are_possible_lipo_cells(rest_v, cells))
+        return {usual, false,
+                fmt::format("{}, which would rest at {:.2f} V each: {} are assumed; --cells states the number", states,
+                            rest_v / cells, usual)};
+    if (cells == usual) return {cells, true};
+    return {cells, true,
+            fmt::format("{}, which are used; by {:.2f} V at rest they would be {}: --cells states another number",
+                        states, rest_v, usual)};
 }
 
 /// Throws UsageError with the flight that ends with the most charge missing from the pack: more than the capacity.
@@ -203,7 +230,6 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
     auto& result = common.identification;
     const auto& fit = result.fit = std::move(curve);
     result.cells = fit.weights.cells;
-    result.cells_are_given = options.cells.has_value();
     result.capacity = estimate_capacity(fit.knots_ah.back(), posterior, options.capacity_ah);
     widen_by_end(result.capacity, end);
     result.chemistry = most_probable_chemistry(posterior);
@@ -373,8 +399,11 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     if (records.empty()) throw NoResultError("no flight is left to identify a battery from");
     const auto& fullest = fullest_of(records);
     if (options.cells) require_possible_cells(fullest.flight, fullest.resting_voltage_v, *options.cells);
-    auto common = identify_common(fit_circuit_jointly(records, cells_of(records, options)), options);
+    auto cells = choose_cells(records, options);
+    auto common = identify_common(fit_circuit_jointly(records, cells.cells), options);
     auto& [result, fitted, posterior, end] = common;
+    result.cells_are_given = cells.is_given;
+    result.cells_warning = std::move(cells.warning);
     add_health(fitted, options.with_capacities);
     result.errors.initial_charge_error_ah = fitted.errors.initial_charge_error_ah;
     result.errors.resistance_ohm = fitted.errors.resistance_ohm;
@@ -382,6 +411,10 @@ BatteryIdentification identify_battery(std::span<const DischargeRecord> records,
     result.battery.intervals.resistance_scatter = resistance_scatter(fitted.resistances, result.fit.resistance_ohm);
     result.flights = identified_flights(fitted, posterior, result.curve_start_depletion_ah);
     result.battery.flight_estimate = flight_estimate(common);
+    std::vector<std::vector<flight::MonitorShare>> monitors;
+    monitors.reserve(records.size());
+    for (const auto& record : records) monitors.push_back(record.monitors);
+    result.battery.monitors = common_monitors(monitors);
     return std::move(result);
 }
 
@@ -411,7 +444,7 @@ std::vector<LeaveOneOutCheck> leave_one_out(std::span<const DischargeRecord> rec
                                             std::size_t max_folds) {
     if (records.size() < 2) return {};
     const auto folds = make_folds(records.size(), std::max<std::size_t>(2, max_folds));
-    const auto all = fit_circuit_jointly(records, cells_of(records, options));
+    const auto all = fit_circuit_jointly(records, choose_cells(records, options).cells);
     std::vector<LeaveOneOutCheck> checks(records.size());
     std::mutex mutex;  // guards `done`
     std::size_t done = 0;

@@ -13,7 +13,7 @@ namespace flightwatt::battery {
 
 struct IdentificationOptions {
     std::optional<double> capacity_ah;
-    std::optional<int> cells;  ///< default: from the highest resting voltage
+    std::optional<int> cells;  ///< default: as the logs state, else from the highest resting voltage
     std::string name = "identified";
     bool with_capacities = false;  ///< of each flight too, in the same least squares as its resistance
 };

@@ -134,7 +134,8 @@ struct BatteryIdentification {
     CircuitErrors errors;
     Capacity capacity;
     int cells = 0;
-    bool cells_are_given = false;
+    bool cells_are_given = false;    ///< by the user or the logs
+    std::string cells_warning = {};  ///< where the logs state other cells than their voltage at rest, or each other
     Chemistry chemistry = Chemistry::lipo;    ///< the most probable one
     double curve_start_depletion_ah = 0.0;    ///< from the full pack, where the curve begins
     double observed_min_soc_percent = 0.0;    ///< state of charge; below, the curve is the chart's

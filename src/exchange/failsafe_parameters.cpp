@@ -72,28 +72,39 @@ int cell_cv(double voltage_v, int cells) {
 
 }  // namespace
 
-ParameterText to_failsafe_ardupilot(const EstimatorInput& /*input*/, const FailsafeCard& card) {
+ParameterText to_failsafe_ardupilot(const EstimatorInput& input, const FailsafeCard& card) {
     ParameterText result{head("ArduPilot") + card_comment(card, "# ")};
-    result.text += fmt::format(
-        "# To act: BATT_FS_LOW_ACT 1 (plane) or 2 (copter) returns, BATT_FS_CRT_ACT 2 (plane) or 1 (copter) lands\n"
-        "BATT_CAPACITY {:.0f}\nBATT_FS_VOLTSRC 0\n",
-        card.capacity_mah);
-    const auto add = [&](const FailsafeAction& action, const char* name) {
-        result.text += fmt::format("BATT_{}_MAH {}\n", name, action.remaining_mah);
-        if (action.voltage) result.text += fmt::format("BATT_{}_VOLT {:.2f}\n", name, action.voltage->voltage_v);
-    };
-    if (card.low) add(*card.low, "LOW");
-    add(card.critical, "CRT");
+    const auto monitors = noted_monitors(input, result);
+    const bool are_counted = monitors.front().part > 0.0;
+    result.text +=
+        "# To act: BATT_FS_LOW_ACT 1 (plane) or 2 (copter) returns, BATT_FS_CRT_ACT 2 (plane) or 1 (copter) lands\n";
+    for (const auto& monitor : monitors) {
+        const auto prefix = monitor.number == 1 ? std::string("BATT") : fmt::format("BATT{}", monitor.number);
+        if (are_counted) result.text += fmt::format("{}_CAPACITY {:.0f}\n", prefix, monitor.part * card.capacity_mah);
+        result.text += fmt::format("{}_FS_VOLTSRC 0\n", prefix);
+        const auto add = [&](const FailsafeAction& action, const char* name) {
+            const auto& voltage = are_counted ? action.voltage : action.voltage_alone;
+            if (are_counted)
+                result.text +=
+                    fmt::format("{}_{}_MAH {:.0f}\n", prefix, name, std::ceil(monitor.part * action.remaining_mah));
+            if (voltage) result.text += fmt::format("{}_{}_VOLT {:.2f}\n", prefix, name, voltage->voltage_v);
+        };
+        if (card.low) add(*card.low, "LOW");
+        add(card.critical, "CRT");
+    }
     note_omitted(card, "BATT_LOW_MAH and BATT_LOW_VOLT are", "BATT_LOW_VOLT and BATT_CRT_VOLT", result);
     return result;
 }
 
-ParameterText to_failsafe_px4(const EstimatorInput& /*input*/, const FailsafeCard& card) {
+ParameterText to_failsafe_px4(const EstimatorInput& input, const FailsafeCard& card) {
     constexpr double warning = 0.05;
     constexpr double step = 0.01;
-    ParameterText result{px4_head("PX4") + card_comment(card, "# ") +
-                         "# To act: COM_LOW_BAT_ACT 3 returns at BAT_CRIT_THR and lands at BAT_EMERGEN_THR\n"};
-    result.text += px4_line("BAT1_CAPACITY", card.capacity_mah);
+    ParameterText result{px4_head("PX4") + card_comment(card, "# ")};
+    const auto monitors = noted_monitors(input, result);
+    if (monitors.front().part == 0.0) return result;
+    result.text += "# To act: COM_LOW_BAT_ACT 3 returns at BAT_CRIT_THR and lands at BAT_EMERGEN_THR\n";
+    for (const auto& monitor : monitors)
+        result.text += px4_line(fmt::format("BAT{}_CAPACITY", monitor.number), monitor.part * card.capacity_mah);
     const double land = add_threshold(px4_emergency, card.critical.soc_percent / units::percent_per_whole, result);
     if (card.low) {
         const double back = add_threshold(

@@ -6,6 +6,8 @@
 #include "exchange/estimators/pack_summary.h"
 #include "exchange/estimators/px4_lines.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace flightwatt::exchange {
@@ -25,18 +27,30 @@ void require_up_to(double value, double max, const char* name, const char* unit)
                      "are battery, model and number of cells (--cells) those of one aircraft?");
 }
 
-std::string cells_line(const PackSummary& pack) {
+std::string cells_line(const PackSummary& pack, int monitor = 1) {
     require_up_to(pack.cells, max_px4_cells, "BAT1_N_CELLS", "cells");
-    return px4_line("BAT1_N_CELLS", pack.cells, ParameterType::int32);
+    return px4_line(fmt::format("BAT{}_N_CELLS", monitor), pack.cells, ParameterType::int32);
 }
 
 /// Of a cell.
-std::string voltage_lines(const PackSummary& pack, const VoltageLine& line) {
+std::string voltage_lines(const PackSummary& pack, const VoltageLine& line, int monitor = 1) {
     if (!(line.full_v - line.empty_v > units::milli)) {
         throw InputError({}, "the voltage of this battery does not depend on its state of charge, as PX4 requires",
                          "identify the open-circuit voltage with flightwatt battery");
     }
-    return px4_line("BAT1_V_EMPTY", line.empty_v / pack.cells) + px4_line("BAT1_V_CHARGED", line.full_v / pack.cells);
+    return px4_line(fmt::format("BAT{}_V_EMPTY", monitor), line.empty_v / pack.cells) +
+           px4_line(fmt::format("BAT{}_V_CHARGED", monitor), line.full_v / pack.cells);
+}
+
+/// Of one monitor: its pack's part of the charge, and the resistance over which its part of the current falls.
+std::string pack_lines(const PackSummary& pack, const flight::MonitorShare& monitor) {
+    auto text = cells_line(pack, monitor.number);
+    if (monitor.part == 0.0) return text;
+    const double cell_ohm = pack.battery.resistance_ohm / pack.cells / monitor.part;
+    require_up_to(cell_ohm, max_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
+    require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
+    return text + px4_line(fmt::format("BAT{}_CAPACITY", monitor.number), pack.capacity_mah * monitor.part) +
+           px4_line(fmt::format("BAT{}_R_INTERNAL", monitor.number), cell_ohm);
 }
 
 /// Until the full battery is empty; where it fails before, at the rate until then.
@@ -52,25 +66,24 @@ double drain_s(const battery::Battery& battery, double power_w) {
 
 ParameterText to_px4(const EstimatorInput& input) {
     const auto pack = summarize_pack(input, px4);
-    const double cell_ohm = pack.battery.resistance_ohm / pack.cells;
-    ParameterText result{px4_head(px4) + cells_line(pack)};
-    require_up_to(cell_ohm, max_resistance_ohm, "BAT1_R_INTERNAL", "ohm");
-    require_up_to(pack.capacity_mah, max_capacity_mah, "BAT1_CAPACITY", "mAh");
-    result.text += px4_line("BAT1_CAPACITY", pack.capacity_mah) + px4_line("BAT1_R_INTERNAL", cell_ohm);
+    ParameterText result{px4_head(px4)};
+    const auto monitors = noted_monitors(input, result);
+    for (const auto& monitor : monitors) result.text += pack_lines(pack, monitor);
     if (pack.battery.thevenin) {
         const auto line = fit_voltage_line(pack.battery, PackSummary{}.lowest_percent);
-        result.text += voltage_lines(pack, line);
+        for (const auto& monitor : monitors) result.text += voltage_lines(pack, line, monitor.number);
         result.notes.push_back(
             fmt::format("PX4's state of charge by voltage is a line: from 10 to 100 % its error is up to {:.0f} points",
                         units::percentage(line.error_v, line.full_v - line.empty_v)));
     } else {
         result.notes.emplace_back("the battery has a constant voltage: BAT1_V_EMPTY and BAT1_V_CHARGED are omitted");
     }
-    if (input.model) {
-        const double current_a = cruise_current_a(input, pack);
+    const double part = std::ranges::max(monitors, {}, &flight::MonitorShare::part).part;
+    if (input.model && part > 0.0) {
+        const double current_a = part * cruise_current_a(input, pack);
         require_up_to(current_a, max_current_a, "BAT_AVRG_CURRENT", "A");
         result.text += px4_line("BAT_AVRG_CURRENT", current_a);
-    } else {
+    } else if (!input.model) {
         result.notes.emplace_back("without a model BAT_AVRG_CURRENT is omitted");
     }
     return result;

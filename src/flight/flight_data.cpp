@@ -128,6 +128,8 @@ FlightData select_circuit(FlightData data, std::size_t number) {
     data.current_a = {circuit.current_a};
     data.charge_ah = {circuit.charge_ah};
     data.battery_temperature_c = {circuit.battery_temperature_c};
+    data.stated_cells = circuit.stated_cells;
+    data.monitors = circuit.monitors;
     data.energy_wh = {};
     return data;
 }

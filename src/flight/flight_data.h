@@ -39,6 +39,13 @@ struct AirspeedEstimate {
     double mean_sd_m_per_s = 0.0;      ///< of the mean of the flight
 };
 
+/// A battery monitor of a vehicle, from 1 on, and the part of its circuit's charge that it counts; 0: unknown.
+struct MonitorShare {
+    int number = 1;
+    double part = 1.0;
+    bool operator==(const MonitorShare&) const = default;
+};
+
 /// Battery packs at one voltage, and the tracks of their sum.
 struct Circuit {
     std::string name;  ///< its battery monitors: "BAT 0 and BAT 1"
@@ -49,6 +56,8 @@ struct Circuit {
     Track charge_ah = {};
     std::optional<double> stated_capacity_ah = {};  ///< of its packs together, if the log's parameters state each
     Track battery_temperature_c = {};               ///< of the pack with the most power
+    std::optional<int> stated_cells = {};           ///< in series, by the log, where its packs agree
+    std::vector<MonitorShare> monitors = {};        ///< of its packs, by number
 };
 
 /// One flight's log with the track that is used for each quantity: what all steps after the selection read. Made by
@@ -94,6 +103,8 @@ struct FlightData : FlightInfo {
     std::optional<AirspeedEstimate> airspeed_estimate;
 
     std::optional<double> stated_capacity_ah;  ///< of the packs of the first circuit, by the log's parameters
+    std::optional<int> stated_cells;           ///< likewise, in series
+    std::vector<MonitorShare> monitors;        ///< of the packs of the circuit of these tracks; empty: not numbered
 
     std::vector<Circuit> circuits;  ///< those of a log that numbers its batteries, the one with the most energy first
     std::vector<Track> other_altitudes;                        ///< candidates of the altitude that were not chosen

@@ -110,10 +110,11 @@ struct FlightInfo {
     std::map<std::string, std::string> monitor_kinds;
     /// Capacities of the monitors' packs by the log's parameters (BATT_CAPACITY, BAT1_CAPACITY), by id [Ah].
     std::map<std::string, double> monitor_capacities_ah;
-    std::string pack_serial;            ///< of a smart battery, joined by "+" of several; empty if unknown
-    std::optional<double> pack_cycles;  ///< charge cycles that it counts; of several the most
-    std::optional<double> motors;       ///< their number by the log's parameters
-    bool log_is_missing = false;        ///< the log has no .log
+    std::map<std::string, double> monitor_cells;  ///< in series, as the log states them (PX4), by the monitors' ids
+    std::string pack_serial;                      ///< of a smart battery, joined by "+" of several; empty if unknown
+    std::optional<double> pack_cycles;            ///< charge cycles that it counts; of several the most
+    std::optional<double> motors;                 ///< their number by the log's parameters
+    bool log_is_missing = false;                  ///< the log has no .log
 
     std::vector<telemetry::AssumedDefinition> assumed_definitions;
     std::vector<telemetry::SkippedLines> skipped;  ///< in order of the first line

@@ -128,11 +128,11 @@ FlightPhases segment(const FlightData& data, const SegmentationOptions& options)
                 {grid.time_s(activity.moving.begin), grid.time_s(activity.moving.end - 1), std::move(no_flight)});
             continue;
         }
-        if (grounds.disagreed) {
+        if (grounds.lift_off_m) {
             phases.warnings.push_back(fmt::format(
-                "the ground is at {:.0f} m before the sortie at {:.0f} s and at {:.0f} m after it: the latter is used",
-                activity.ground_before->altitude_m, grid.time_s(activity.moving.begin),
-                activity.ground_after->altitude_m));
+                "the ground is at {:.0f} m before the sortie at {:.0f} s and at {:.0f} m after it: heights are above "
+                "the latter",
+                *grounds.lift_off_m, grid.time_s(activity.moving.begin), grounds.after_m));
         }
         if (auto warning = motor_contradiction(candidate); !warning.empty())
             phases.warnings.push_back(std::move(warning));

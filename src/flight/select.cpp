@@ -64,6 +64,8 @@ void choose_batteries(const FlightSeries& series, BatteryTracks found, FlightDat
     data.charge_ah = {data.circuits.front().charge_ah};
     data.battery_temperature_c = {data.circuits.front().battery_temperature_c};
     data.stated_capacity_ah = data.circuits.front().stated_capacity_ah;
+    data.stated_cells = data.circuits.front().stated_cells;
+    data.monitors = data.circuits.front().monitors;
 }
 
 /// The pack's current, else the sum of the consumers' currents; no voltage of consumers with different ones.
@@ -84,6 +86,7 @@ void choose_voltage_and_current(const FlightSeries& series, FlightData& data) {
     data.battery_temperature_c = first_that_varies(series, "battery_temperature_c");
     if (series.monitor_capacities_ah.size() == 1)
         data.stated_capacity_ah = series.monitor_capacities_ah.begin()->second;
+    if (series.monitor_cells.size() == 1) data.stated_cells = stated_cells(series, series.monitor_cells.begin()->first);
 }
 
 /// Puts the ESCs in the place of batteries without a power, whose voltage stays, or of those that do not supply them.

@@ -129,6 +129,7 @@ void list_matter(TomlFields& fields, FrontMatter& matter) {
     section("block_names", series.block_names, list_block_names);
     section("monitor_kinds", series.monitor_kinds, list_by_id<std::string>);
     section("monitor_capacities_ah", series.monitor_capacities_ah, list_by_id<double>);
+    section("monitor_cells", series.monitor_cells, list_by_id<double>);
     const auto list_assumed = [](TomlFields& of, telemetry::AssumedDefinition& assumed) {
         of.text("text", assumed.text);
         of.real("since_s", assumed.since_s);

@@ -243,5 +243,16 @@ TEST(FailsafeCard, RefusesWhatIsNoProbabilityOrReserve) {
     EXPECT_THROW(make_failsafe_card(request), UsageError);
 }
 
+TEST(FailsafeCard, StatesWhichMonitorsCountThePacks) {
+    auto request = wing_request();
+    EXPECT_EQ(make_failsafe_card(request).monitors, "");
+    request.battery.monitors = {{1, 0.55}, {2, 0.45}};
+    const auto known = make_failsafe_card(request);
+    EXPECT_THAT(known.monitors, HasSubstr("battery monitor 1 counts 55.0 % and battery monitor 2 counts 45.0 %"));
+    EXPECT_THAT(describe(known), HasSubstr("measured: " + known.monitors));
+    request.battery.monitors = {{1, 0.0}, {2, 0.0}};
+    EXPECT_THAT(describe(make_failsafe_card(request)), HasSubstr("assumption: packs: the charge is that of all"));
+}
+
 }  // namespace
 }  // namespace flightwatt::answer

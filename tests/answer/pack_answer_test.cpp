@@ -50,6 +50,12 @@ TEST(FindPack, HasTheMeanVoltageWhereNothingElseIsKnown) {
     EXPECT_THAT(pack.warnings.front(), HasSubstr("assumed to have 15.5 V"));
 }
 
+TEST(FindPack, KeepsTheMonitorsOfPacksOfConstantVoltage) {
+    auto flown = logged({});
+    flown.monitors = {{1, 0.5}, {2, 0.5}};
+    EXPECT_EQ(find_pack({}, "no current", {5.0, "as given"}, {flown, flown}).battery.monitors, flown.monitors);
+}
+
 TEST(FindPack, SaysWhatIsMissing) {
     const auto reason = [](const CapacityChoice& capacity, const FlightFacts& facts) -> std::string {
         try {

@@ -92,5 +92,18 @@ TEST(BatteryWarnings, CompareTheCapacityWithTheFlights) {
     }
 }
 
+TEST(Monitors, OfFlightsHaveKnownPartsWhereFlightsAgree) {
+    using Monitors = std::vector<flight::MonitorShare>;
+    EXPECT_EQ(common_monitors({{}, {}}), Monitors{});
+    EXPECT_EQ(common_monitors({{{1, 1.0}}, {}}), Monitors{});
+    EXPECT_EQ(common_monitors({{{2, 1.0}}}), (Monitors{{2, 1.0}}));
+    EXPECT_EQ(common_monitors({{{1, 0.52}, {2, 0.48}}, {{1, 0.56}, {2, 0.44}}}), (Monitors{{1, 0.54}, {2, 0.46}}));
+    const Monitors unknown{{1, 0.0}, {2, 0.0}};
+    EXPECT_EQ(common_monitors({{{1, 0.5}, {2, 0.5}}, {{1, 0.56}, {2, 0.44}}}), unknown) << "6 points apart";
+    EXPECT_EQ(common_monitors({{{1, 0.5}, {2, 0.5}}, {{1, 1.0}}}), unknown);
+    EXPECT_EQ(common_monitors({{{1, 0.5}, {2, 0.5}}, {}}), unknown);
+    EXPECT_EQ(common_monitors({{{1, 0.0}, {2, 0.0}}}), unknown);
+}
+
 }  // namespace
 }  // namespace flightwatt::battery

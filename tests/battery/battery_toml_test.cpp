@@ -71,6 +71,26 @@ TEST(BatteryToml, HoldsWhatTheFlightsIndicate) {
     EXPECT_EQ(open_circuit_voltage_v(estimated_by_flights(without_curve).value(), 50.0), 11.4) << "the pack's own";
 }
 
+TEST(BatteryToml, HoldsTheMonitorsOfPacksAndTheirParts) {
+    const auto with = [](const std::string& lines) {
+        auto text = pack_toml;
+        text.insert(text.find("rc_resistance_ohm"), lines);
+        return text;
+    };
+    const auto of = [&](const std::string& lines) { return battery_from(parse_toml(with(lines), "b.toml")); };
+    using Monitors = std::vector<flight::MonitorShare>;
+    const std::string known = "monitors = [1, 3]\nmonitor_percent = [60.0, 40.0]\n";
+    EXPECT_EQ(of(known).monitors, (Monitors{{1, 0.6}, {3, 0.4}}));
+    EXPECT_EQ(to_toml(of(known)), "format = 1\n" + with(known));
+    EXPECT_EQ(of("monitors = [1, 2]\n").monitors, (Monitors{{1, 0.0}, {2, 0.0}}));
+    EXPECT_EQ(to_toml(of("monitors = [1, 2]\n")), "format = 1\n" + with("monitors = [1, 2]\n"));
+    for (const auto* wrong :
+         {"monitors = [0]\n", "monitors = [1.5]\n", "monitors = [1, 101]\n",
+          "monitors = [1, 2]\nmonitor_percent = [100]\n", "monitors = [1, 2]\nmonitor_percent = [60, 60]\n",
+          "monitors = [1, 2]\nmonitor_percent = [110, -10]\n", "monitor_percent = [100]\n"})
+        EXPECT_NE(rejected([&] { of(wrong); }), "") << wrong;
+}
+
 TEST(BatteryToml, RefusesWhatNoFlightsIndicate) {
     const auto of = [](const std::string& lines) {
         return rejected([&] { battery_from(parse_toml(with_estimate(lines), "b.toml")); });
@@ -150,7 +170,7 @@ TEST(BatteryToml, RefusesWhatIsNoPaperBattery) {
     EXPECT_NE(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncells = 101\n"), "");
     EXPECT_EQ(of("voltage_v = 4\nresistance_ohm = 0\ncapacity_ah = 1\ncolour = 3\n"),
               "b.toml:4:1: unknown key 'colour'; known keys: between_flights, capacity_ah, cells, intervals, model, "
-              "name, resistance_ohm, voltage_v");
+              "monitors, name, resistance_ohm, voltage_v");
 }
 
 TEST(BatteryToml, HasAFormatThatIsKnown) {

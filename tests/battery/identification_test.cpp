@@ -202,6 +202,39 @@ TEST(Identification, ChecksTheNumberOfCells) {
     EXPECT_THROW(identify_battery(records, {2.4, 5, ""}), UsageError);
 }
 
+TEST(Identification, HasTheCellsThatTheLogsStateIfTheyArePossible) {
+    std::vector records(2, test::discharge_record(synthetic_discharge(known_pack(), {}, 1)));  // rest at 12.36 V
+    const auto found = [&] { return identify_battery(records, {2.4, {}, ""}); };
+    EXPECT_EQ(found().cells_warning, "");
+    records[0].stated_cells = 3;
+    EXPECT_EQ(found().cells, 3);
+    EXPECT_EQ(found().cells_warning, "");
+    records[0].stated_cells = records[1].stated_cells = 2;
+    EXPECT_EQ(found().cells, 3);
+    EXPECT_EQ(found().cells_warning,
+              "the logs state 2 cells, which would rest at 6.18 V each: 3 are assumed; --cells states the number");
+    records[1].stated_cells = 3;
+    EXPECT_EQ(found().cells_warning, "the logs state 2 and 3 cells: 3 are assumed; --cells states the number");
+    EXPECT_EQ(identify_battery(records, {2.4, 3, ""}).cells_warning, "") << "given";
+}
+
+TEST(Identification, PrefersStatedCellsToThoseOfAFullPack) {
+    auto pack = known_pack();
+    for (auto& voltage_v : pack.thevenin->open_circuit.voltage_v) voltage_v *= 4.0;  // 12 cells
+    SyntheticDischarge used;
+    used.initial_charge_ah = 1.2;
+    used.duration_s = 900.0;
+    std::vector records{test::discharge_record(synthetic_discharge(pack, used, 1))};
+    const auto full = identify_battery(records, {2.4, {}, ""});
+    EXPECT_EQ(full.cells, 11);
+    records[0].stated_cells = 12;
+    const auto found = identify_battery(records, {2.4, {}, ""});
+    EXPECT_EQ(found.battery.cells, 12);
+    EXPECT_GT(found.flights[0].initial_depletion_ah, full.flights[0].initial_depletion_ah + 0.6) << "not full";
+    EXPECT_NE(found.cells_warning.find("the logs state 12 cells, which are used; by"), std::string::npos);
+    EXPECT_NE(found.cells_warning.find("they would be 11: --cells states another number"), std::string::npos);
+}
+
 TEST(Identification, ForetellsAFlightWithinItsNoise) {
     std::vector<DischargeRecord> records;
     for (const std::uint64_t seed : {1, 2, 3}) {

@@ -55,6 +55,20 @@ TEST(Px4, HasThePackACell) {
     EXPECT_NEAR(px4.at("BAT1_R_INTERNAL"), (0.08 + 0.05) / 3.0, 1e-8) << "both resistances, of a cell";
 }
 
+TEST(Px4, HasThePackOfEachMonitor) {
+    const auto all = px4_values(known_input());
+    auto input = known_input();
+    input.battery->monitors = {{1, 0.6}, {2, 0.4}};
+    const auto px4 = px4_values(input);
+    EXPECT_NEAR(px4.at("BAT2_CAPACITY"), 0.4 * all.at("BAT1_CAPACITY"), 1e-6);
+    EXPECT_NEAR(px4.at("BAT2_R_INTERNAL") * 0.4, all.at("BAT1_R_INTERNAL"), 1e-8) << "the same voltage falls";
+    EXPECT_NEAR(px4.at("BAT_AVRG_CURRENT"), 0.6 * all.at("BAT_AVRG_CURRENT"), 1e-6) << "one value for all: the most";
+    EXPECT_EQ(px4.at("BAT2_V_EMPTY"), all.at("BAT1_V_EMPTY"));
+    input.battery->monitors = {{1, 0.0}, {2, 0.0}};
+    const auto unknown = px4_values(input);
+    EXPECT_FALSE(unknown.contains("BAT1_CAPACITY") || unknown.contains("BAT_AVRG_CURRENT"));
+}
+
 TEST(Px4, TellsTheChargeByItsOwnFormula) {
     const auto input = known_input();
     const auto px4 = px4_values(input);

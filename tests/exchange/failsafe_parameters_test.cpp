@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
@@ -61,6 +62,55 @@ TEST(FailsafeArdupilot, HasRemainingChargeAndPackVoltage) {
     EXPECT_GT(values.at("BATT_LOW_VOLT"), values.at("BATT_CRT_VOLT"));
     EXPECT_EQ(values.at("BATT_FS_VOLTSRC"), 0.0) << "voltages under load";
     EXPECT_THAT(result.notes, IsEmpty());
+}
+
+TEST(FailsafeArdupilot, OfSeveralMonitorsHasThePartOfEach) {
+    const auto card = wing_card();
+    auto input = wing_input();
+    input.battery->monitors = {{1, 0.55}, {2, 0.45}};
+    const auto result = to_failsafe_ardupilot(input, card);
+    const auto values = values_of(result.text, 0, 1);
+    EXPECT_EQ(values.at("BATT_CAPACITY"), 1760.0);
+    EXPECT_EQ(values.at("BATT2_CAPACITY"), 1440.0);
+    for (const auto* name : {"LOW", "CRT"}) {
+        const auto& action = name == std::string("LOW") ? *card.low : card.critical;
+        // The packs together are used as far as the card states when their monitors act.
+        const double left_mah =
+            values.at(fmt::format("BATT_{}_MAH", name)) + values.at(fmt::format("BATT2_{}_MAH", name));
+        EXPECT_NEAR(left_mah, action.remaining_mah + 1.0, 1.0);
+        EXPECT_NEAR(values.at(fmt::format("BATT2_{}_MAH", name)), 0.45 * action.remaining_mah, 1.0);
+        EXPECT_EQ(values.at(fmt::format("BATT2_{}_VOLT", name)), values.at(fmt::format("BATT_{}_VOLT", name)));
+    }
+    EXPECT_THAT(result.text, HasSubstr("# packs: the charge is that of all together, of which battery monitor 1 counts "
+                                       "55.0 % and battery monitor 2 counts 45.0 %: each has values, and an action"));
+    EXPECT_THAT(result.notes, SizeIs(1));
+}
+
+TEST(FailsafeFormats, HaveNoChargeWhereThePartsOfMonitorsAreNotKnown) {
+    const auto card = wing_card();
+    auto input = wing_input();
+    input.battery->monitors = {{1, 0.0}, {2, 0.0}};
+    const auto ardupilot = to_failsafe_ardupilot(input, card);
+    const auto values = values_of(ardupilot.text, 0, 1);
+    EXPECT_THAT(ardupilot.text, Not(HasSubstr("BATT_CAPACITY")));
+    EXPECT_FALSE(values.contains("BATT_LOW_MAH") || values.contains("BATT2_CRT_MAH"));
+    EXPECT_NEAR(values.at("BATT2_LOW_VOLT"), card.low->voltage_alone->voltage_v, 0.006) << "without a count";
+    const auto px4 = to_failsafe_px4(input, card);
+    EXPECT_THAT(values_of(px4.text, 2, 3), IsEmpty());
+    for (const auto& result : {ardupilot, px4}) {
+        EXPECT_THAT(result.text,
+                    HasSubstr("count parts that are not known, as the flights differ: values of charge are"));
+        EXPECT_THAT(result.notes, SizeIs(1));
+    }
+}
+
+TEST(FailsafePx4, OfSeveralMonitorsHasTheCapacityOfEach) {
+    auto input = wing_input();
+    input.battery->monitors = {{2, 0.6}, {3, 0.4}};
+    const auto values = values_of(to_failsafe_px4(input, wing_card()).text, 2, 3);
+    EXPECT_NEAR(values.at("BAT2_CAPACITY"), 1920.0, 1e-6);
+    EXPECT_NEAR(values.at("BAT3_CAPACITY"), 1280.0, 1e-6);
+    EXPECT_FALSE(values.contains("BAT1_CAPACITY"));
 }
 
 TEST(FailsafePx4, ReturnsAtCriticalAndLandsAtEmergency) {

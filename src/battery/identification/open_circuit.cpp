@@ -28,6 +28,11 @@ int lipo_cells(double resting_voltage_v) {
     return nearly_empty && resting_voltage_v <= (cells - 1) * full_high_voltage_cell_v ? std::max(1, cells - 1) : cells;
 }
 
+bool are_possible_lipo_cells(double resting_voltage_v, int cells) {
+    const double cell_v = resting_voltage_v / cells;
+    return cell_v >= chart_voltage_v(Chemistry::lipo, 0.0) && cell_v <= max_high_voltage_cell_v;
+}
+
 void require_possible_cells(const std::string& flight, double resting_voltage_v, int cells) {
     const double cell_v = resting_voltage_v / cells;
     if (cell_v >= min_cell_voltage_v && cell_v <= max_cell_voltage_v) return;

@@ -18,6 +18,9 @@ int lipo_cells(double resting_voltage_v);
 inline constexpr double min_cell_voltage_v = 2.5;
 inline constexpr double max_cell_voltage_v = 4.5;
 
+/// Whether so many LiPo cells, high-voltage ones too, are neither below empty nor above full at rest.
+bool are_possible_lipo_cells(double resting_voltage_v, int cells);
+
 /// Throws UsageError where a pack with this number of cells cannot rest at the voltage of this flight, the fullest.
 void require_possible_cells(const std::string& flight, double resting_voltage_v, int cells);
 

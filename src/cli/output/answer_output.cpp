@@ -221,6 +221,7 @@ std::string failsafe_line(const AircraftAnswer& answer) {
     if (card.low && home.value && home.basis != cruise.basis)
         text += fmt::format(" at {} ({})", speed_text(*home.value), home.basis);
     text += "; " + action_text("land", card.critical);
+    if (!card.monitors.empty()) text += "; " + card.monitors;
     if (!card.chances_known) text += "; chances unknown: two more flights would show how flights differ";
     return text;
 }

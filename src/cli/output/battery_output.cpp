@@ -201,6 +201,7 @@ std::vector<BatteryRemark> battery_remarks(const battery::BatteryIdentification&
         if (!text.empty()) remarks.push_back({std::move(text), true});
     };
     const auto note = [&](std::string text) { remarks.push_back({std::move(text)}); };
+    warn(identified.cells_warning);
     warn(cells_warning(identified));
     for (auto& limit : curve_limits(identified)) note(std::move(limit));
     if (!identified.battery.intervals.resistance_scatter)

@@ -33,6 +33,19 @@ PackSummary summarize_pack(const EstimatorInput& input, const std::string& reade
     return pack;
 }
 
+std::vector<flight::MonitorShare> noted_monitors(const EstimatorInput& input, ParameterText& result) {
+    if (!input.battery || input.battery->monitors.empty()) return {{1, 1.0}};
+    const auto& monitors = input.battery->monitors;
+    auto note = describe_monitors(*input.battery);
+    if (monitors.front().part == 0.0)
+        note += ": values of charge are omitted; flights with the same packs show the parts";
+    else if (monitors.size() > 1)
+        note += ": each has values, and an action, of its own";
+    result.text += fmt::format("# {}\n", note);
+    result.notes.push_back(std::move(note));
+    return monitors;
+}
+
 const mechanical::MechanicalModel& required_model(const EstimatorInput& input, const std::string& reader) {
     if (!input.model) {
         throw InputError({}, fmt::format("{} needs a mechanical model, and none is given", reader),

@@ -22,6 +22,10 @@ struct PackSummary {
 /// Returns the summary of the input's battery. Throws InputError without one.
 PackSummary summarize_pack(const EstimatorInput& input, const std::string& reader);
 
+/// Returns the battery monitors that the parameters are for: of the battery, else the first one, which counts all. Adds
+/// a comment, and a note, of several, and of parts of the charge that are not known.
+std::vector<flight::MonitorShare> noted_monitors(const EstimatorInput& input, ParameterText& result);
+
 /// Returns the input's model. Throws InputError without one.
 const mechanical::MechanicalModel& required_model(const EstimatorInput& input, const std::string& reader);
 

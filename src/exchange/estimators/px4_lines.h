@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace flightwatt::exchange {
 enum class ParameterType { int32 = 6, real32 = 9 };
 
 /// Returns the line of a parameter.
-inline std::string px4_line(const char* name, double value, ParameterType type = ParameterType::real32) {
+inline std::string px4_line(std::string_view name, double value, ParameterType type = ParameterType::real32) {
     const auto text = type == ParameterType::int32 ? fmt::format("{:.0f}", value) : fmt::format("{:.9g}", value);
     return fmt::format("1\t1\t{}\t{}\t{}\n", name, text, static_cast<int>(type));
 }

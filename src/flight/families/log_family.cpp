@@ -152,15 +152,14 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
 
 }  // namespace
 
-std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
-                                                    const std::vector<std::string>& first, const std::string& others) {
+std::map<std::string, double> monitor_parameters(const std::map<std::string, double>& parameters,
+                                                 const std::vector<std::string>& first, const std::string& others) {
     constexpr int max_monitors = 9;
-    constexpr double mah_per_ah = 1000.0;
-    std::map<std::string, double> capacities_ah;
+    std::map<std::string, double> values;
     const auto add = [&](int number, const std::string& name) {
         const auto found = parameters.find(name);
         if (found != parameters.end() && found->second > 0.0)
-            capacities_ah.emplace(fmt::format("{}", number - 1), found->second / mah_per_ah);
+            values.emplace(fmt::format("{}", number - 1), found->second);
     };
     for (const auto& name : first) add(1, name);
     for (int number = 2; number <= max_monitors; ++number) {
@@ -168,6 +167,14 @@ std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, 
         name.replace(name.find('N'), 1, std::to_string(number));
         add(number, name);
     }
+    return values;
+}
+
+std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
+                                                    const std::vector<std::string>& first, const std::string& others) {
+    constexpr double mah_per_ah = 1000.0;
+    auto capacities_ah = monitor_parameters(parameters, first, others);
+    for (auto& [id, capacity] : capacities_ah) capacity /= mah_per_ah;
     return capacities_ah;
 }
 

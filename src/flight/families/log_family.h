@@ -80,9 +80,12 @@ double speed_of(const std::vector<double>& north_east);
 /// receivers whose counter of weeks overflowed are 20 or 39 years late. NaN for a time before the GPS epoch.
 double correct_week_rollover(double utc_s);
 
-/// Returns the capacities of battery monitors by their ids "0", "1" ... from parameters in mAh: of the first monitor
-/// by any of the names `first`, of the monitor N by `others`, in which "N" is the number [Ah]. Values that are
-/// not above 0 mean unknown.
+/// Returns parameters of battery monitors by their ids "0", "1" ...: of the first monitor by any of the names `first`,
+/// of the monitor N by `others`, whose first "N" is the number. Values that are not above 0 mean unknown.
+std::map<std::string, double> monitor_parameters(const std::map<std::string, double>& parameters,
+                                                 const std::vector<std::string>& first, const std::string& others);
+
+/// Returns the same of capacities in mAh [Ah].
 std::map<std::string, double> monitor_capacities_ah(const std::map<std::string, double>& parameters,
                                                     const std::vector<std::string>& first, const std::string& others);
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 /// Where PX4's ULog has the quantities of a flight (docs/formats.md).
 namespace flightwatt::flight {
 namespace {
@@ -174,7 +176,7 @@ std::string vehicle_kind(const telemetry::AutopilotLog& log) {
     return rotary == nullptr ? "" : rotary->values.front() != 0.0 ? "rotorcraft" : "fixedwing";
 }
 
-/// The serial numbers and cycles of smart batteries, as the first message of each instance states them; its `id` is only
+/// The cells of batteries, and the serial numbers and cycles of smart ones, as the first message of each instance states them; its `id` is only
 /// a place in the vehicle.
 void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
     const auto* status = sender.table("battery_status");
@@ -182,10 +184,14 @@ void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
     const auto* instance = status->column("multi_id");
     const auto* serial = status->column("serial_number");
     const auto* cycles = status->column("cycle_count");
+    const auto* cells = status->column("cell_count");
     std::set<double> seen;
     std::vector<double> serials;
     for (std::size_t row = 0; row < status->time_s.size(); ++row) {
-        if (!seen.insert(instance == nullptr ? 0.0 : instance->values[row]).second) continue;
+        const double id = instance == nullptr ? 0.0 : instance->values[row];
+        if (!seen.insert(id).second) continue;
+        if (cells != nullptr && cells->values[row] > 0.0)
+            series.monitor_cells.insert_or_assign(fmt::format("{}", id), cells->values[row]);
         if (serial != nullptr) serials.push_back(serial->values[row]);
         if (cycles != nullptr && is_stated(cycles->values[row]))
             series.pack_cycles = std::max(series.pack_cycles.value_or(0.0), cycles->values[row]);
@@ -209,6 +215,7 @@ void describe_px4(const telemetry::AutopilotLog& log, FlightSeries& series) {
     series.firmware = vehicle_kind(log);
     series.monitor_capacities_ah =
         monitor_capacities_ah(parameters, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY");
+    series.monitor_cells = monitor_parameters(parameters, {"BAT1_N_CELLS", "BAT_N_CELLS"}, "BATN_N_CELLS");
     add_packs(log.log.senders.front(), series);
 }
 
@@ -229,7 +236,7 @@ const LogFamily& px4_family() {
                                    {"vehicle_local_position", "multi_id"}},
                                   describe_px4,
                                   {{"vehicle_status", {"vehicle_type", "is_rotary_wing", "is_vtol"}},
-                                   {"battery_status", {"serial_number", "cycle_count"}}}};
+                                   {"battery_status", {"serial_number", "cycle_count", "cell_count"}}}};
     return family;
 }
 

@@ -147,7 +147,7 @@ SortieEdges find_hover_edges(const ResampledFlight& grid, const Activity& activi
     const auto is_on_ground = [&](std::size_t i) { return std::abs(height_m[i]) <= ground_m; };
     SortieEdges edges;
     if (ground_before || (ground_after && is_on_ground(first))) {
-        const double clear_altitude_m = heights.ground_m + std::min(clear_m, airborne_m);
+        const double clear_altitude_m = heights.ground_m + heights.lift_off_m + std::min(clear_m, airborne_m);
         first = lift_off_of(part_of(grid.altitude_m, {span.begin, moving.end}), clear_altitude_m, first);
         edges.lift_off_s = time_s(first);
     }

@@ -30,6 +30,10 @@ struct PowerLevels {
     double power_w(double percent) const { return std::lerp(idle_w, running_w, percent / units::percent_per_whole); }
 };
 
+std::string describe(const PowerLevels& levels) {
+    return fmt::format("power: idle {:.1f} W, running {:.1f} W", levels.idle_w, levels.running_w);
+}
+
 Track percent_of(const Track& power, const PowerLevels& levels) {
     Track percent{.time_s = power.time_s, .value = power.value};
     for (double& value : percent.value) value = levels.percent(value);
@@ -96,6 +100,14 @@ std::size_t remove_glitches(Track& throttle, const Track& power, const PowerLeve
     return count;
 }
 
+/// Opens a VTOL's throttle, which is that of its wing's or of its lift motors alone, as far as the power shows that any
+/// of them runs.
+void add_other_motors(Track& throttle, const Track& power, const PowerLevels& levels) {
+    for (std::size_t i = 0; i < throttle.value.size(); ++i)
+        if (const double percent = levels.percent(power.value[i]); percent > idle_power_percent)
+            throttle.value[i] = std::max(throttle.value[i], percent);
+}
+
 /// Replaces an idle throttle by the power if its levels are known, else by the motor's speed. Returns a warning.
 std::string follow_motor(const FlightData& data, Track& throttle, const std::optional<PowerLevels>& levels,
                          double idle_percent) {
@@ -148,6 +160,10 @@ MotorRecord motor_record(const FlightData& data, const Track& altitude_m) {
                 record.warnings.push_back(
                     fmt::format("{} samples of the throttle are removed: it is open, but the power idle", glitches));
             }
+            if (!data.vtol_state.empty()) {
+                add_other_motors(throttle, power, *levels);
+                record.evidence += fmt::format(" and {}", describe(*levels));
+            }
         }
         auto contradiction = follow_motor(data, throttle, levels, idle_percent);
         if (!contradiction.empty()) record.warnings.push_back(std::move(contradiction));
@@ -167,7 +183,7 @@ MotorRecord motor_record(const FlightData& data, const Track& altitude_m) {
         return record;
     }
     record.indicator = MotorIndicator::power;
-    record.evidence = fmt::format("power: idle {:.1f} W, running {:.1f} W", levels->idle_w, levels->running_w);
+    record.evidence = describe(*levels);
     const double above_w = levels->power_w(idle_power_percent);
     if (data.firmware != "rotorcraft")  // in the air, these always draw much
         record.warnings.push_back(

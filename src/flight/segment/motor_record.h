@@ -26,7 +26,7 @@ inline constexpr double min_lifting_a = 5.0;
 inline constexpr double min_running_rpm = 500.0;
 
 /// Motor effort: the throttle; without one the power from idle (0) to running (100), else the motor's speed in percent
-/// of its full speed (the 98th percentile of the log).
+/// of its full speed (the 98th percentile of the log). A VTOL has two kinds of motors: the larger of throttle and power.
 struct MotorRecord {
     MotorIndicator indicator = MotorIndicator::unknown;
     Track percent;         ///< empty if unknown

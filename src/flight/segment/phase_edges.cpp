@@ -104,20 +104,31 @@ void find_edges_of_motion(Flown& flown, SortieEdges& edges) {
     if (flown.activity.ends_at_rest()) edges.touchdown_s = flown.time_s(flown.touchdown);
 }
 
+/// The ground below the lift-off, in terms of the heights: that before, where the motor starts near it. An estimator may
+/// find its altitude only at the end of the rest.
+double lift_off_ground_m(const Flown& flown, std::size_t flyable) {
+    const double before_m = flown.heights.lift_off_m;
+    return flyable > 0 && std::abs(flown.height(flyable) - before_m) <= flown.airborne_m() ? before_m : 0.0;
+}
+
 /// Finds lift-off and touchdown, as grid points and interpolated times.
 void find_ground_edges(Flown& flown, SortieEdges& edges) {
     const auto& height = flown.heights.height_m;
     const auto is_high = [&](double h) { return h > flown.airborne_m(); };
     const auto flyable = first_flyable(flown);
-    auto first = std::find_if(height.begin() + static_cast<std::ptrdiff_t>(flyable), height.end(), is_high);
-    if (first == height.end()) first = std::find_if(height.begin(), height.end(), is_high);
+    const double lift_off_m = lift_off_ground_m(flown, flyable);
+    auto from = height.begin() + static_cast<std::ptrdiff_t>(flyable);
+    if (std::find_if(from, height.end(), is_high) == height.end()) from = height.begin();
+    auto first = std::find_if(from, height.end(), [&](double h) { return is_high(h - lift_off_m); });
+    if (first == height.end()) first = std::find_if(from, height.end(), is_high);
     const auto up = static_cast<std::size_t>(first - height.begin());
     const auto down =
         static_cast<std::size_t>(std::find_if(height.rbegin(), height.rend(), is_high).base() - height.begin()) - 1;
     const double ground = flown.ground_m();
     flown.lift_off = up;
-    while (flown.lift_off > 0 && height[flown.lift_off] > ground) --flown.lift_off;
-    if (height[flown.lift_off] <= ground) edges.lift_off_s = crossing_s(flown, flown.lift_off, ground);
+    while (flown.lift_off > 0 && height[flown.lift_off] > lift_off_m + ground) --flown.lift_off;
+    if (height[flown.lift_off] <= lift_off_m + ground)
+        edges.lift_off_s = crossing_s(flown, flown.lift_off, lift_off_m + ground);
     flown.touchdown = down;
     while (flown.touchdown + 1 < height.size() && height[flown.touchdown] > ground) ++flown.touchdown;
     if (height[flown.touchdown] <= ground) edges.touchdown_s = crossing_s(flown, flown.touchdown - 1, ground);
@@ -260,8 +271,9 @@ GroundLevels estimate_ground_levels(const ResampledFlight& grid, const Activity&
         if (jumps.time_s[i] >= grid.time_s(activity.span.begin) && jumps.time_s[i] < grid.time_s(activity.span.end))
             wander_m = std::max(wander_m, jumps.value[i]);
     const double allowed_m = std::max({10.0, (highest_m - after.altitude_m) / 3.0, wander_m});
-    const bool disagree = std::abs(before.altitude_m - after.altitude_m) > allowed_m;
-    return {disagree ? after.altitude_m : before.altitude_m, after.altitude_m, wander_m, disagree};
+    if (std::abs(before.altitude_m - after.altitude_m) <= allowed_m)
+        return {before.altitude_m, after.altitude_m, wander_m};
+    return {after.altitude_m, after.altitude_m, wander_m, before.altitude_m};
 }
 
 Heights compute_heights(const ResampledFlight& grid, const Activity& activity, const GroundLevels& grounds) {
@@ -274,6 +286,7 @@ Heights compute_heights(const ResampledFlight& grid, const Activity& activity, c
         heights.height_m.push_back(grid.altitude_m[activity.span.begin + i] - ground_m);
     }
     heights.ground_m = grounds.before_m;
+    heights.lift_off_m = grounds.lift_off_m.value_or(grounds.before_m) - grounds.before_m;
     heights.wander_m = grounds.wander_m;
     heights.max_m = *std::max_element(heights.height_m.begin(), heights.height_m.end());
     // Of an altitude that is not that of the ground where the aircraft is at rest, all may be below it.

@@ -30,13 +30,14 @@ struct Activity {
 std::vector<Activity> find_activities(const ResampledFlight& grid, const std::vector<IndexSpan>& rests,
                                       const SegmentationOptions& options);
 
-/// The ground levels on both sides of an activity. If they differ by more than a third of the height and by more than
-/// they wander (an estimator without a fix), both are the later one. `wander_m` includes jumps in flight.
+/// The ground levels on both sides of an activity, between which heights are measured. If they differ by more than a
+/// third of the height and by more than they wander, both are the later one, and `lift_off_m` is the one before.
+/// `wander_m` includes jumps in flight.
 struct GroundLevels {
     double before_m = 0.0;
     double after_m = 0.0;
     double wander_m = 0.0;
-    bool disagreed = false;
+    std::optional<double> lift_off_m = {};
 };
 
 /// Returns the ground levels of an activity; that of `planned_ground_m` if it has no rest on either side.
@@ -52,6 +53,7 @@ inline constexpr double airborne_fraction = 0.25;
 struct Heights {
     std::vector<double> height_m;  ///< at each point of activity.span
     double ground_m = 0.0;
+    double lift_off_m = 0.0;       ///< of the ground before, in terms of height_m
     double cruise_height_m = 0.0;  ///< median of the upper half
     double max_m = 0.0;
     double wander_m = 0.0;  ///< see GroundLevels

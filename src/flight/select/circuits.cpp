@@ -1,5 +1,6 @@
 #include "flight/select/circuits.h"
 
+#include "base/number.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/select/device_sum.h"
@@ -9,8 +10,10 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -33,6 +36,7 @@ constexpr std::size_t enough_samples = 10;
 /// A battery monitor as logged.
 struct Monitor {
     std::string name;    ///< "BAT 0", "BAT2"
+    int number;          ///< from 1 on
     std::string stated;  ///< its kind by the log's parameters, see FlightInfo::monitor_kinds
     Track power_w;
     Track voltage_v;
@@ -44,6 +48,7 @@ struct Monitor {
     double mean_v = 0.0;
     double mean_a = 0.0;
     std::optional<double> stated_capacity_ah = {};  ///< see FlightInfo::monitor_capacities_ah
+    std::optional<int> stated_cells = {};           ///< see FlightInfo::monitor_cells
     std::string exclusion = {};                     ///< why it is not counted; empty if it is
 
     bool has_current() const { return !power_w.empty() && !current_a.empty(); }
@@ -60,6 +65,12 @@ Track track_of(const FlightSeries& series, const Track& power, std::string_view 
     return found == series.tracks.end() ? Track{} : within_bounds(*found);
 }
 
+/// The number of a monitor, from 1 on, by its id, "0" of the first; without a number in it by its place.
+int number_of(const std::string& id, std::size_t place) {
+    constexpr std::uint64_t max_id = 99;
+    return static_cast<int>(std::min<std::uint64_t>(parse_unsigned(id).value_or(place), max_id)) + 1;
+}
+
 /// The monitors that state a voltage, in the order of the log; empty without a number. Of messages without a number the
 /// first one counts.
 std::vector<Monitor> monitors_of(const FlightSeries& series) {
@@ -71,8 +82,10 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
         if (power.device.empty() && std::exchange(has_plain, true)) continue;
         is_numbered = is_numbered || !power.device.empty();
         const auto message = message_of(power);
+        const auto id = power.device.empty() ? std::string("0") : power.device;
         const bool is_named = power.device.empty() || std::isdigit(static_cast<unsigned char>(message.back())) != 0;
         Monitor monitor{is_named ? message : fmt::format("{} {}", message, power.device),
+                        number_of(id, monitors.size()),
                         {},
                         within_bounds(power),
                         track_of(series, power, "voltage_v"),
@@ -81,11 +94,11 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
                         track_of(series, power, "energy_wh"),
                         track_of(series, power, "battery_temperature_c")};
         if (monitor.voltage_v.empty()) continue;
-        const auto id = power.device.empty() ? std::string("0") : power.device;
         const auto kind = series.monitor_kinds.find(id);
         if (kind != series.monitor_kinds.end()) monitor.stated = kind->second;
         const auto capacity = series.monitor_capacities_ah.find(id);
         if (capacity != series.monitor_capacities_ah.end()) monitor.stated_capacity_ah = capacity->second;
+        monitor.stated_cells = stated_cells(series, id);
         monitor.mean_v = mean(monitor.voltage_v.value);
         if (monitor.has_current()) {
             monitor.mean_w = mean(monitor.power_w.value);
@@ -244,6 +257,27 @@ std::optional<double> stated_capacity_ah(const std::vector<const Monitor*>& pack
     return sum_ah;
 }
 
+/// The cells in series of packs at one voltage; std::nullopt where they state different ones, or none.
+std::optional<int> common_cells(const std::vector<const Monitor*>& packs) {
+    std::set<int> cells;
+    for (const auto* pack : packs)
+        if (pack->stated_cells) cells.insert(*pack->stated_cells);
+    return cells.size() == 1 ? std::optional(*cells.begin()) : std::nullopt;
+}
+
+/// The monitors of packs, each with its part of the mean current; unknown if one of them measures nothing.
+std::vector<MonitorShare> shares_of(const std::vector<const Monitor*>& packs) {
+    double sum_a = 0.0;
+    for (const auto* pack : packs) sum_a += pack->mean_a;
+    const auto is_known = [&](const Monitor* pack) { return pack->mean_a / sum_a > 0.0; };
+    const bool are_known = std::ranges::all_of(packs, is_known);
+    std::vector<MonitorShare> shares;
+    shares.reserve(packs.size());
+    for (const auto* pack : packs) shares.push_back({pack->number, are_known ? pack->mean_a / sum_a : 0.0});
+    std::ranges::sort(shares, {}, &MonitorShare::number);
+    return shares;
+}
+
 Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power) {
     ChosenTrack unused;
     Circuit circuit{names_of(packs),
@@ -253,7 +287,9 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
                     sum_of(devices_of(packs, &Monitor::current_a), unused),
                     counter_of(packs, &Monitor::charge_ah, power),
                     stated_capacity_ah(packs),
-                    packs.front()->battery_temperature_c};
+                    packs.front()->battery_temperature_c,
+                    common_cells(packs),
+                    shares_of(packs)};
     circuit.voltage_v.device.clear();
     circuit.battery_temperature_c.device.clear();
     if (!circuit.power_w.empty()) circuit.mean_power_w = mean(circuit.power_w.value);
@@ -280,6 +316,13 @@ void describe_choice(const std::vector<Monitor>& monitors, BatteryTracks& found)
 }
 
 }  // namespace
+
+std::optional<int> stated_cells(const FlightSeries& series, const std::string& id) {
+    constexpr double max_cells = 100.0;
+    const auto cells = series.monitor_cells.find(id);
+    const bool is_stated = cells != series.monitor_cells.end() && cells->second >= 1.0 && cells->second <= max_cells;
+    return is_stated ? std::optional(static_cast<int>(cells->second)) : std::nullopt;
+}
 
 std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
     BatteryTracks found;

@@ -17,6 +17,9 @@ struct BatteryTracks {
     std::string note = {};          ///< states of which batteries the power is the sum
 };
 
+/// Returns the cells in series of the monitor with that id, by the log; std::nullopt without, and beyond 1 to 100.
+std::optional<int> stated_cells(const FlightSeries& series, const std::string& id);
+
 /// Finds the packs and circuits of a series; std::nullopt without numbered monitors that measure a current.
 std::optional<BatteryTracks> select_batteries(const FlightSeries& series);
 

@@ -67,6 +67,13 @@ TEST(LogFamily, ReadsCapacitiesOfPacksFromParametersInMilliampereHours) {
     EXPECT_EQ(monitor_capacities_ah(px4, {"BAT1_CAPACITY", "BAT_CAPACITY"}, "BATN_CAPACITY"), (Capacities{{"0", 4.0}}));
 }
 
+TEST(LogFamily, ReadsCellsOfPacksFromParameters) {
+    using Cells = std::map<std::string, double>;
+    const Cells parameters{{"BAT1_N_CELLS", 12.0}, {"BAT2_N_CELLS", 6.0}, {"BAT3_N_CELLS", 0.0}};
+    EXPECT_EQ(monitor_parameters(parameters, {"BAT1_N_CELLS", "BAT_N_CELLS"}, "BATN_N_CELLS"),
+              (Cells{{"0", 12.0}, {"1", 6.0}}));
+}
+
 TEST(LogFamily, ReadsThatAQuadplaneIsOnItsWingWhileItLogsNoLiftMotors) {
     auto log = test::dataflash_log(300, "ArduPlane V4.3.1 (2cb4b85a)") +
                test::dataflash_format(4, "QTUN", "Qf", "TimeUS,ThO", 12);
@@ -217,7 +224,7 @@ FlightSeries with_smart_batteries(std::uint16_t first, std::uint16_t second, std
     auto log = test::ulog_header() +
                test::ulog_message('F',
                                   "battery_status:uint64_t timestamp;float voltage_v;float current_a;"
-                                  "uint16_t cycle_count;uint16_t serial_number;uint8_t id;") +
+                                  "uint16_t cycle_count;uint16_t serial_number;uint8_t cell_count;uint8_t id;") +
                test::ulog_subscription(0, 7, "battery_status") + test::ulog_subscription(1, 8, "battery_status");
     for (unsigned i = 0; i < 20; ++i)
         for (const std::uint16_t topic : {7, 8})
@@ -225,7 +232,8 @@ FlightSeries with_smart_batteries(std::uint16_t first, std::uint16_t second, std
                 'D', test::little_endian(topic) +
                          test::little_endian(std::uint64_t{10'000'000} + std::uint64_t{200'000} * i + topic) +
                          test::little_endian(22.0F) + test::little_endian(10.0F + 0.1F * static_cast<float>(i % 2)) +
-                         test::little_endian(cycles) + test::little_endian(topic == 7 ? first : second) + '\x01');
+                         test::little_endian(cycles) + test::little_endian(topic == 7 ? first : second) +
+                         (topic == 7 ? "\x06\x01" : std::string("\0\x01", 2)));
     return series_of(log, "x.ulg");
 }
 
@@ -234,6 +242,8 @@ TEST(LogFamily, SmartBatteriesOfPx4StateTheirSerialNumbers) {
     const auto two = with_smart_batteries(31415, 27182, 12);
     EXPECT_EQ(two.pack_serial, "31415+27182");
     EXPECT_EQ(two.pack_cycles, 12.0);
+    EXPECT_EQ(two.monitor_cells, (std::map<std::string, double>{{"0", 6.0}})) << "0: not known";
+    EXPECT_EQ(parse_series_csv(to_csv(two), "x.csv").monitor_cells, two.monitor_cells);
     EXPECT_EQ(parse_series_csv(to_csv(two), "x.csv").pack_serial, "31415+27182");
     EXPECT_EQ(parse_series_csv(to_csv(two), "x.csv").pack_cycles, 12.0);
     const auto unknown = with_smart_batteries(0, 65535, 0);

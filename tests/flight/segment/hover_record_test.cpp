@@ -118,6 +118,8 @@ TEST(HoverEdges, OfTakeoffAndLandingAreThoseOfFirstClimbAndLastDescent) {
     // A slow drift before the descent, and a short pause in it.
     const Track drifting{.time_s = {0, 20, 30, 70, 80, 86, 88, 96, 120}, .value = {0, 0, 30, 30, 27.5, 15, 15, 0, 0}};
     expect_edges(flown(drifting, 20, 96), {20, 30, 80, 96});
+    const Track to_a_roof{.time_s = {0, 20, 30, 90, 100, 120}, .value = {0, 0, 30, 30, 15, 15}};
+    expect_edges(flown(to_a_roof, 20, 100), {20, 30, 90, 100});
     const Track up_and_down{.time_s = {0, 20, 30, 40, 60}, .value = {0, 0, 20, 0, 0}};
     expect_edges(flown(up_and_down, 20, 40), {20, 30, 40});
 }

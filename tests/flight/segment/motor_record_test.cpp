@@ -181,6 +181,26 @@ TEST(MotorRecord, TakesPowerWhereTheThrottleIsThatOfManualMode) {
     EXPECT_THAT(standing.warnings, Not(testing::Contains(HasSubstr("the latter is used there"))));
 }
 
+TEST(MotorRecord, TakesPowerWhereTheThrottleOfAVtolIsNotThatOfItsLiftMotors) {
+    auto columns = columns_of(sortie(100));
+    const auto expected = segment(select_tracks(test::series_of(columns)));
+    // Less than half a minute of hover before and after the wing; on the ground an idle power.
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        const bool hovers = columns.time_s[i] < 125.0 || columns.time_s[i] > 445.0;
+        const bool lifts = hovers && columns.altitude_m[i] > 0.0;
+        columns.power_w[i] = lifts ? 900.0 : columns.power_w[i] + 4.0;  // on the wing less than a tenth of that
+        if (hovers) columns.throttle_percent[i] = 0.0;
+    }
+    auto series = test::series_of(columns);
+    series.tracks.push_back(
+        {.name = "vtol_state", .source = "QTUN.ThO", .time_s = {0.0, 125.0, 445.0}, .value = {3.0, 4.0, 3.0}});
+    const auto phases = segment(select_tracks(series));
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    EXPECT_NEAR(phases.sorties[0].start_s(), expected.sorties.at(0).start_s(), 1.5);
+    EXPECT_NEAR(phases.sorties[0].end_s(), expected.sorties.at(0).end_s(), 1.5);
+    EXPECT_EQ(phases.motor_source, "series CSV and power: idle 4.0 W, running 900.0 W");
+}
+
 TEST(MotorRecord, TakesPowerFromHalfAMinuteOn) {
     const auto with_power_for = [](double powered_s) {
         auto columns = columns_of(sortie(100));

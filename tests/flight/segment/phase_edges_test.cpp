@@ -64,6 +64,24 @@ TEST(PhaseEdges, AGliderThatKeepsItsHeightWithTheMotorOffDoesNotRest) {
     EXPECT_NEAR(landing_start_s(sortie), 311.0, 4.0);
 }
 
+TEST(PhaseEdges, LiftOffAndTouchdownAreByTheGroundOnTheirSide) {
+    for (const double after_m : {-40.0, 0.0, 40.0}) {
+        const auto columns = test::columns_of({{0, 0, 0},
+                                               {98, 0, 0},
+                                               {99, 0, 90},
+                                               {100, 0, 90},
+                                               {160, 60, 90},
+                                               {400, 60, 60},
+                                               {430, after_m, 0},
+                                               {500, after_m, 0}});
+        const auto phases = segment(select_tracks(test::series_of(columns)));
+        ASSERT_EQ(phases.sorties.size(), 1u) << after_m;
+        EXPECT_NEAR(phases.sorties[0].start_s(), 101.5, 1.6) << after_m;
+        EXPECT_NEAR(phases.sorties[0].end_s(), 429.0, 2.5) << after_m;
+        EXPECT_EQ(phases.warnings.size(), after_m == 0.0 ? 0u : 1u);
+    }
+}
+
 TEST(PhaseEdges, LiftOffIsNotBeforeTheMotorFirstRuns) {
     // An estimator that wanders on the ground for minutes, as far as a quarter of the height flown.
     auto columns = test::columns_of({{0, 0, 0},

@@ -110,6 +110,28 @@ TEST(Circuits, StateTheCapacityOfThePacksThatCountOnlyWhereEachIsStated) {
     EXPECT_NEAR(select_tracks(series).stated_capacity_ah.value(), 3.0, 1e-12);
 }
 
+TEST(Circuits, StateTheMonitorsOfTheirPacksAndTheirParts) {
+    using Monitors = std::vector<MonitorShare>;
+    const auto series = series_of({{"BAT", "2", 16.0, times(0.5)}, {"BAT", "0", 16.0, times(0.75)}});
+    const auto shared = select_tracks(series).monitors;
+    ASSERT_EQ(shared.size(), 2U);
+    EXPECT_EQ(shared[0].number, 1);
+    EXPECT_NEAR(shared[0].part, 0.6, 1e-12);
+    EXPECT_EQ(shared[1].number, 3);
+    const auto apart = select_tracks(series_of({{"BAT", "", 24.0, times(1.0)}, {"BAT2", "1", 49.0, times(2.0)}}));
+    EXPECT_EQ(apart.monitors, (Monitors{{2, 1.0}}));
+    EXPECT_EQ(select_circuit(apart, 2).monitors, (Monitors{{1, 1.0}}));
+}
+
+TEST(Circuits, StateTheCellsWherePacksAgree) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.6)}});
+    EXPECT_FALSE(select_tracks(series).stated_cells);
+    series.monitor_cells["1"] = 4.0;
+    EXPECT_EQ(select_tracks(series).stated_cells, 4);
+    series.monitor_cells["0"] = 5.0;
+    EXPECT_FALSE(select_tracks(series).stated_cells);
+}
+
 TEST(Circuits, CountAPackThatTwoMonitorsSeeOnceAndSaySo) {
     const auto second = [](double part_of, double volts) {
         return series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", volts, times(part_of)}});
