@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "battery/identification/pack_changes.h"
 #include "flight/flight_phases.h"
-#include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
 
 #include <algorithm>
@@ -62,7 +61,7 @@ double min_difference(std::vector<double> values) {
     return min;
 }
 
-/// `counter_ah` is the on-board counter's charge; empty: none, or it restarted.
+/// `counter_ah` is the on-board counter's charge, or empty.
 void add_charge(const std::vector<double>& counter_ah, DischargeRecord& record) {
     const auto& time_s = record.time_s;
     const bool counted = !counter_ah.empty() && counter_ah.back() > counter_ah.front();
@@ -122,8 +121,7 @@ void fill_record(const flight::FlightData& data, const PackRecord& part, Dischar
     record.time_s = part.time_s;
     record.voltage_v = part.voltage_v;
     record.current_a = part.current_a;
-    const bool restarts = flight::restarts(data.charge_ah, part.time_s.front(), part.time_s.back());
-    add_charge(restarts ? std::vector<double>() : part.counter_ah, record);
+    add_charge(part.counter_ah, record);
     mark_used(part.throttle_percent, record);
     add_rest(data, record);
     record.resolution_v = min_difference(record.voltage_v);

@@ -58,7 +58,7 @@ TEST(DischargeRecord, IntegratesTheCurrentWhereNothingCounts) {
     }
 }
 
-TEST(DischargeRecord, IntegratesTheCurrentWhereTheCounterRestarts) {
+TEST(DischargeRecord, HasTheChargeAlsoWhereTheCounterRestarts) {
     auto series = flight();
     const double counted_ah = series.charge_ah.back() - series.charge_ah.front();
     const double before_ah = series.charge_ah[series.charge_ah.size() / 3];

@@ -1,5 +1,6 @@
 #include "battery/identification/open_circuit.h"
 
+#include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
 

@@ -9,6 +9,7 @@
 #include "path/cruise_path.h"
 #include "path/path_entries.h"
 #include "path/plan_blocks.h"
+#include "path/plan_fence.h"
 #include "path/plan_files.h"
 #include "path/trajectory.h"
 #include "path/waypoint_files.h"

@@ -5,7 +5,6 @@
 #include <map>
 #include <mutex>
 #include <numeric>
-#include <shared_mutex>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -54,16 +53,17 @@ class StudentTable {
     std::optional<boost::math::interpolators::cardinal_cubic_hermite<std::vector<double>>> area_sinh_;
 };
 
-/// The table of some degrees of freedom, made once.
+/// The table of some degrees of freedom, made once. Each thread knows where it is: drawn flights need it often.
 const StudentTable& student_table(double degrees_of_freedom) {
-    static std::shared_mutex mutex;
-    static std::map<double, StudentTable> tables;
-    {
-        const std::shared_lock reading(mutex);
-        if (const auto known = tables.find(degrees_of_freedom); known != tables.end()) return known->second;
+    thread_local std::map<double, const StudentTable*> known;
+    auto& table = known[degrees_of_freedom];
+    if (table == nullptr) {
+        static std::mutex mutex;
+        static std::map<double, StudentTable> tables;
+        const std::lock_guard lock(mutex);
+        table = &tables.try_emplace(degrees_of_freedom, degrees_of_freedom).first->second;
     }
-    const std::unique_lock writing(mutex);
-    return tables.try_emplace(degrees_of_freedom, degrees_of_freedom).first->second;
+    return *table;
 }
 
 /// The flights that have the quantity of each of `spreads`, a row a flight, less their means.
