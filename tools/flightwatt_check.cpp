@@ -36,8 +36,8 @@ Fields<PlanLeg> record_fields(const PlanLeg*) {
 
 Fields<PlanRemedy> record_fields(const PlanRemedy*) {
     using R = PlanRemedy;
-    return {field("kind", &R::kind, "airspeed, heading, part (of the path), pack or payload"),
-            field("value", &R::value, "m/s, degrees, part, Ah or kg"),
+    return {field("kind", &R::kind, "airspeed, heading, spacing, part (of the path), pack or payload"),
+            field("value", &R::value, "m/s, degrees, m, part, Ah or kg"),
             field("text", &R::text, "the change"),
             field("final_soc_percent", &R::final_soc_percent, "at landing; null: it does not land"),
             field("probability", &R::probability, "of keeping the reserve; null: unknown"),
@@ -49,7 +49,7 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
     return {
         field("plan", &R::plan, "its file"),
         field("fits", &R::fit, "yes, perhaps or no"),
-        field("reason", &R::reason, "why it cannot be flown, is uncertain, or a part is not flown; empty otherwise"),
+        field("reason", &R::reason, "why it cannot be flown, or is uncertain; empty otherwise"),
         field("probability", &R::probability, "of keeping the reserve; null: unknown"),
         field("probability_interval_95", &R::probability_95, "in new flights"),
         field("probability_required", &R::probability_required, "by --probability"),
@@ -59,7 +59,6 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
         field("flown", &R::flown, "the flight as modelled"),
         field("legs", &R::legs, "in the order of the flight"),
         field("remedies", &R::remedies, "what would help; empty where it fits"),
-        field("missing", &R::missing, "movements of the plan that are not flown, and why: it is perhaps at most"),
         field("chosen", &R::chosen, "what the plan leaves open"),
         field("notes", &R::notes, "limits of the answer")};
 }
@@ -169,8 +168,6 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
              ""});
     for (const auto& remedy : check.remedies)
         lines.push_back({&remedy == &check.remedies.front() ? "Helps" : "", remedy_text(remedy), ""});
-    for (const auto& text : check.missing)
-        lines.push_back({&text == &check.missing.front() ? "Not flown" : "", text, ""});
     const bool is_missed = check.probability < check.probability_required || !check.flown.keeps_reserve;
     if (is_missed && check.remedies.empty() && check.probability)
         lines.push_back({"Helps", "nothing that was tried: another airspeed, a part of the path, a larger pack", ""});
@@ -224,10 +221,10 @@ int flightwatt::stages::check_stage(int argc, char** argv) {
         "check", "PLAN... --model MODEL.toml --battery PACK.toml",
         R"(Answers whether an aircraft flies a plan on its pack: yes, perhaps or no, with the probability of keeping the
 reserve, as drawn flights show it; how long, how far, with what energy; the charge leg by leg, with the way from home and
-back; where it fails; and what would help, each simulated: another airspeed, other lines over an area, a part of the
-path, a larger pack, less payload. With a movement of the plan that is not flown it is perhaps at most. Plans are .plan,
-.waypoints, flight plans of Paparazzi (--block), KML, GeoJSON and CSV, as of new-mission --plan. Without --model and
---battery it takes those of an answer, in flightwatt-out.
+back; where it fails; and what would help, each simulated: another airspeed, other or fewer lines over an area, a part
+of the path, a larger pack, less payload. With a movement of the plan that is not flown it is perhaps at most. Plans are
+.plan, .waypoints, flight plans of Paparazzi (--block), KML, GeoJSON and CSV, as of new-mission --plan. Without --model
+and --battery it takes those of an answer, in flightwatt-out.
 
 Exit code 0: every plan fits; 5: one does not, or perhaps; 3: one cannot be read.)"};
     stage.examples = {"flightwatt check survey.plan --model model.toml --battery pack.toml --wind 6@250",
@@ -246,9 +243,7 @@ Exit code 0: every plan fits; 5: one does not, or perhaps; 3: one cannot be read
     options.add("wind", arguments.wind, {.value = "SPEED@DEG"}, "wind along the plan: 6@250 is 6 m/s from 250 degrees");
     options.add("home", arguments.home, {.value = "LAT,LON"},
                 "where it takes off and lands; default: the plan's home, or its first place");
-    options.add("airspeed", plan.airspeed_m_per_s,
-                {.value = "M_PER_S", .min = 0.0, .max = path::max_m_per_s, .above_min = true},
-                "airspeed along the plan; default: that of the plan, or of the model's flights");
+    cli::add_plan_options(options, plan, {});
     options.add("payload", aircraft.payload_kg, {.value = "KG", .min = 0.0, .max = 1000.0, .unit = "kg"},
                 "what the aircraft carries beyond its own mass");
     options.add("mass", aircraft.takeoff_mass_kg,
@@ -259,7 +254,5 @@ Exit code 0: every plan fits; 5: one does not, or perhaps; 3: one cannot be read
     options.add("probability", probability,
                 {.value = "P", .min = 0.5, .max = 1.0, .below_max = true, .hint = "95 % is 0.95"},
                 "of keeping the reserve, for a yes");
-    options.add("block", plan.blocks, {.value = "NAME"},
-                "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return check_plans(call, arguments); });
 }

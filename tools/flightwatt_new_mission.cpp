@@ -53,9 +53,8 @@ struct NewMissionArguments {
     std::optional<std::string> parameters;
     std::optional<std::string> name;
     std::optional<std::string> plan;
-    std::vector<std::string> blocks;
+    mission::PlanToFly flown;  ///< but its file
     std::optional<std::string> wind;
-    std::optional<double> airspeed_m_per_s;
     bool replaces = false;
     mission::NewMission mission;  ///< what options state of it
 };
@@ -85,9 +84,12 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
     fresh.model = mechanical::read_mechanical_model(mechanical);
     fresh.battery = named_from(folder, pack);
     fresh.pack = battery::read_battery(pack);
-    if (arguments.plan)
-        fly_plan({*arguments.plan, named_from(folder, *arguments.plan), arguments.blocks, arguments.airspeed_m_per_s},
-                 mechanical, fresh);
+    if (arguments.plan) {
+        auto flown = arguments.flown;
+        flown.file = *arguments.plan;
+        flown.name = named_from(folder, flown.file);
+        fly_plan(flown, mechanical, fresh);
+    }
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);
     compute::ProfileNaming naming;
     naming.where.file = "new-mission --parameters A,B";
@@ -194,17 +196,15 @@ key as a comment, with its meaning and an example.)"};
         "mass", arguments.mission.takeoff_mass_kg,
         {.value = "KG", .min = 0.0, .above_min = true, .unit = "kg", .needs = {"payload"}, .old_name = "takeoff-mass"},
         "mass of the aircraft as it flew, where its flights do not show the effect of payload");
+    options.add("reserve", arguments.mission.reserve_soc_percent, {.value = "PERCENT", .min = 0.0, .max = 99.0},
+                "charge to land with");
     options.add("plan", arguments.plan, cli::input_file("FILE"),
                 "what is flown: .plan, .waypoints, GeoJSON, KML, CSV, or a flight plan of Paparazzi (XML)");
-    options.add("block", arguments.blocks, {.value = "NAME", .needs = {"plan"}},
-                "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
-    options.add("airspeed", arguments.airspeed_m_per_s,
-                {.value = "M_PER_S", .min = 0.0, .max = path::max_m_per_s, .above_min = true, .needs = {"plan"}},
-                "airspeed along the plan; default: that of the plan, or of the model's flights");
+    cli::add_plan_options(options, arguments.flown, {"plan"});
     options.add("wind", arguments.wind, {.value = "SPEED@DEG", .needs = {"plan"}},
                 "wind along the plan: 6@250 is 6 m/s from 250 degrees");
     options.add("packs", arguments.mission.packs, {.value = "N", .min = 1.0, .max = 1000.0},
-                "fly the cruise with N packs, changed on the ground");
+                "fly the cruise with N packs, changed on the ground: [packs]");
     options.add("all-keys", arguments.mission.shows_all_keys, "write every key, explained, those not used as comments");
     options.add("force", arguments.replaces, "replace FILE of -o");
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return write_new_mission(call, arguments); });

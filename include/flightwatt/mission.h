@@ -34,6 +34,9 @@ struct MissionResult {
     /// Share of drawn flights that land below the reserve, 0 to 1; none where none were drawn, or where nothing shows
     /// how flights differ.
     std::optional<double> probability_below_reserve;
+    /// Why the result may be wrong whatever its probability: a movement of the plan that is not flown, a climb beyond
+    /// what the model's flights flew.
+    std::vector<std::string> uncertain;
 };
 
 struct MissionOptions {

@@ -26,6 +26,7 @@ using flight::Phase;
 struct Change {
     std::optional<double> airspeed_m_per_s = {};
     std::optional<double> heading_deg = {};
+    std::optional<double> spacing_m = {};
     std::optional<double> payload_kg = {};
     mission::MissionReadOptions reading = {};
 };
@@ -49,12 +50,10 @@ class PlanFlight {
         auto plan = question_.plan;
         if (change.airspeed_m_per_s) plan.airspeed_m_per_s = change.airspeed_m_per_s;
         if (change.heading_deg) plan.heading_deg = change.heading_deg;
+        if (change.spacing_m) plan.spacing_m = change.spacing_m;
         if (change.payload_kg) fresh.payload_kg = change.payload_kg;
         fly_plan(plan, fresh.mechanical, fresh);
-        if (check != nullptr) {
-            check->chosen = fresh.flown->chosen;
-            check->missing = fresh.flown->missing;
-        }
+        if (check != nullptr) check->chosen = fresh.flown->chosen;
         const auto file = plan.file.filename().string() + ".toml";  // in the working folder, and never written
         try {
             return mission::parse_mission(new_mission_toml(fresh), file, change.reading);
@@ -155,6 +154,7 @@ class Remedies {
         add_airspeed(flown);
         add_heading(flown);
         if (!flown) return;
+        add_spacing(*flown);
         add_part();
         add_pack(*flown);
         add_payload();
@@ -208,6 +208,20 @@ class Remedies {
         add_best(
             "heading", headings, [](double deg) { return Change{.heading_deg = deg}; },
             [](double deg) { return fmt::format("lines on a course of {:.0f} degrees", deg); }, flown);
+    }
+
+    /// Lines as close as suffices.
+    void add_spacing(const Flown& flown) {
+        const auto& survey = setup_of(flown.mission).survey;
+        if (!survey) return;
+        constexpr double max_times = 16.0;
+        const double own_m = survey->layout.strips.front().spacing_m;
+        const auto with = [&](double times) { return flight_.fly(Change{.spacing_m = std::ceil(own_m * times)}); };
+        if (!flight_.suffices(with, max_times)) return;
+        const double times_less = greatest(1.0 / max_times, 1.0, [&](double less) { return with(1.0 / less); });
+        const double spacing_m = std::ceil(own_m / times_less);
+        add("spacing", spacing_m, fmt::format("lines {:g} m instead of {:g} m apart", spacing_m, own_m),
+            with(1.0 / times_less));
     }
 
     /// The greatest value with which the flight suffices, between one that does and one that does not.
@@ -291,15 +305,12 @@ PlanCheck check_plan(const PlanQuestion& question) {
         add_legs(*flown, check);
         find_failure(*flown, check);
         const bool is_known = flown->probability.has_value();
-        const auto& uncertain = setup_of(flown->mission).uncertain;
-        const bool is_sure = is_known && check.missing.empty() && uncertain.empty() && flight.suffices(*flown);
-        check.fit = is_sure ? PlanFit::yes : check.flown.keeps_reserve ? PlanFit::perhaps : PlanFit::no;
+        auto reasons = check.flown.uncertain;
         if (!is_known)
-            check.reason = "nothing shows how the power of flights differs: their probability is unknown";
-        else if (!check.missing.empty())
-            check.reason = "a part of the plan is not flown: " + check.missing.front();
-        else if (check.fit == PlanFit::perhaps && flight.suffices(*flown))
-            check.reason = fmt::format("{}", fmt::join(uncertain, "; "));
+            reasons.emplace_back("nothing shows how the power of flights differs: their probability is unknown");
+        const bool is_sure = reasons.empty() && flight.suffices(*flown);
+        check.fit = is_sure ? PlanFit::yes : check.flown.keeps_reserve ? PlanFit::perhaps : PlanFit::no;
+        check.reason = fmt::format("{}", fmt::join(reasons, "; "));
     }
     const bool suffices = flown && flight.suffices(*flown);
     if (!suffices && (check.probability || !check.flown.keeps_reserve))

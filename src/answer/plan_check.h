@@ -15,8 +15,7 @@ namespace flightwatt::answer {
 /// Whether a plan fits a battery.
 enum class PlanFit {
     yes,      ///< it keeps the reserve with the probability that is asked for
-    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one, or a part is uncertain or
-              ///< not flown
+    perhaps,  ///< it keeps it as modelled, with less than that probability or an unknown one, or a part is uncertain
     no        ///< it misses it as modelled, or cannot be flown in the wind
 };
 
@@ -44,9 +43,9 @@ struct PlanLeg {
 
 /// A change of the flight, and how it lands with it.
 struct PlanRemedy {
-    std::string kind;  ///< "airspeed", "heading", "part", "pack" or "payload"
+    std::string kind;  ///< "airspeed", "heading", "spacing", "part", "pack" or "payload"
     std::string text;
-    double value = 0.0;  ///< m/s, degrees, part of the path, Ah or kg
+    double value = 0.0;  ///< m/s, degrees, m, part of the path, Ah or kg
     std::optional<double> final_soc_percent;
     std::optional<double> probability;  ///< of keeping the reserve; absent: unknown
     bool suffices = false;              ///< alone
@@ -67,7 +66,6 @@ struct PlanCheck {
     std::optional<double> fails_at_s;  ///< since lift-off
     std::vector<PlanLeg> legs;
     std::vector<PlanRemedy> remedies;  ///< where the answer is not yes
-    std::vector<std::string> missing;  ///< movements of the plan that are not flown: it is perhaps at most
     std::vector<std::string> chosen;   ///< what the plan leaves open
     std::vector<std::string> notes;    ///< of the mission
 };

@@ -14,7 +14,7 @@ MissionResult simulate_mission(const std::filesystem::path& file, const MissionO
     const auto flown = mission::simulate_prepared(prepared, {.output_s = options.step_s});
     const auto& summary = flown.simulation.summary;
     MissionResult result{summary.mission,       {}, summary.final_soc_percent, summary.energy_wh, summary.duration_s,
-                         summary.keeps_reserve, {}};
+                         summary.keeps_reserve, {}, summary.uncertain};
     for (const auto& row : flown.simulation.curve.rows)
         result.curve.push_back({row.time_s, row.soc_percent, row.power_w, row.terminal_voltage_v});
     if (options.drawn_flights == 0) return result;

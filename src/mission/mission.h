@@ -83,7 +83,6 @@ struct MissionSetup {
     std::optional<double> airspeed_m_per_s = {};  ///< of the cruise, if stated
     /// The cruise's mean power at the stated airspeed, or along its path; the cruise has this level then.
     std::optional<mechanical::ConstantPower> cruise_level = {};
-    bool has_steep_turn = false;                       ///< of the path, which the aircraft may not be able to fly
     std::optional<SurveyCoverage> survey = {};         ///< of a path over an area
     std::optional<path::CruisePath> cruise_path = {};  ///< source of the cruise's power instead of the model's curve
     /// Measured power of each phase in a replay, instead of the power by model and path.
@@ -102,7 +101,7 @@ struct MissionSetup {
     std::optional<mechanical::HeldOutScore> power_model =
         {};                                   ///< of the model that predicts the power, if its file has a validation
     std::vector<std::string> notes = {};      ///< warnings from reading the file
-    std::vector<std::string> uncertain = {};  ///< reasons why the result may be wrong, of parts that matter
+    std::vector<std::string> uncertain = {};  ///< reasons why the result may be wrong, which no probability covers
     std::optional<Packs> packs = {};          ///< then it is divided (packs.h) before anything flies it
 };
 

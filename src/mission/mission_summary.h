@@ -122,9 +122,10 @@ struct MissionSummary {
     /// Mean utility a second over the whole mission (of a linear utility of FPS with weight 1: mean FPS), where
     /// the mission states utilities. What would run after the battery's end has none.
     std::optional<double> utility;
-    bool feasible = false;             ///< the battery lasts: empty at the very end counts, any earlier does not
-    double reserve_soc_percent = 0.0;  ///< required by the mission
-    bool keeps_reserve = false;        ///< feasible, and the reserve is left
+    bool feasible = false;                    ///< the battery lasts: empty at the very end counts, any earlier does not
+    double reserve_soc_percent = 0.0;         ///< required by the mission
+    bool keeps_reserve = false;               ///< feasible, and the reserve is left
+    std::vector<std::string> uncertain = {};  ///< as in MissionSetup
     std::optional<path::SurveyLayout> lines = std::nullopt;     ///< over an area, if they were chosen
     std::optional<double> coverage = std::nullopt;              ///< with them: how often a place is seen on average
     std::optional<AdaptiveDecisions> decisions = std::nullopt;  ///< of an adaptive policy

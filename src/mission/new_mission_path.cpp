@@ -53,13 +53,16 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
 
 NewPath path_of_area(std::string_view text, const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
     constexpr double usual_spacing_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
-    const double spacing_m = is_rotorcraft ? usual_spacing_m : 2.0 * turn_radius_m(airspeed_m_per_s);
+    const double spacing_m =
+        plan.spacing_m.value_or(is_rotorcraft ? usual_spacing_m : 2.0 * turn_radius_m(airspeed_m_per_s));
+    const auto spacing_reason = plan.spacing_m  ? std::string("as asked")
+                                : is_rotorcraft ? std::string("assumed: your camera and height decide it")
+                                                : fmt::format("for turns with a bank of {} degrees", bank_deg);
     const double heading_deg =
         plan.heading_deg ? *plan.heading_deg : best_heading_deg(text, plan.file.string(), spacing_m);
     return {{fmt::format("area = {}", toml_string(plan.name)), fmt::format("spacing_m = {}", spacing_m),
              fmt::format("heading_deg = {}", heading_deg)},
-            {is_rotorcraft ? fmt::format("spacing_m = {}, assumed: your camera and height decide it", spacing_m)
-                           : fmt::format("spacing_m = {}, for turns with a bank of {} degrees", spacing_m, bank_deg),
+            {fmt::format("spacing_m = {}, {}", spacing_m, spacing_reason),
              fmt::format("heading_deg = {}, {}", heading_deg, plan.heading_deg ? "as asked" : "for the fewest turns")}};
 }
 
@@ -110,6 +113,9 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
         if (plan.home) path.keys.push_back(start);
         return path;
     }
+    if (plan.spacing_m || plan.heading_deg)
+        throw UsageError(
+            fmt::format("{} is no area (GeoJSON, KML): its lines have no spacing and heading to state", file.string()));
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
         const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft};
@@ -133,7 +139,6 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
         if (entry.airspeed_m_per_s) path.own_m_per_s.insert(*entry.airspeed_m_per_s);
     path.speed = std::move(entries.speed);
     path.lands = entries.ends_with_landing;
-    path.missing = std::move(entries.missing);
     return path;
 }
 

@@ -77,7 +77,7 @@ void add_path(const NewMission& mission, Values& values) {
     values["wind"] = mission.wind ? fmt::format("{}", mission.wind->speed_m_per_s) : "";
     values["wind_from"] = mission.wind ? fmt::format("{}", mission.wind->from_deg) : "";
     values["reserve"] = fmt::format("{}", mission.reserve_soc_percent);
-    values["packs"] = mission.packs > 1 ? fmt::format("{}", mission.packs) : "";
+    values["packs"] = mission.packs ? fmt::format("{}", *mission.packs) : "";
 }
 
 /// The lines that are no comments, a blank line before each table.

@@ -36,8 +36,8 @@ struct NewMission {
     std::optional<double> airspeed_m_per_s = {};  ///< none: new_airspeed_m_per_s()
     std::optional<path::Wind> wind = {};          ///< along the path
     double reserve_soc_percent = 20.0;
-    std::size_t packs = 1;
-    bool states_parameters = false;  ///< names of the profiles' parameters are stated, as the files lack them
+    std::optional<std::size_t> packs = {};  ///< states [packs]
+    bool states_parameters = false;         ///< names of the profiles' parameters are stated, as the files lack them
     bool shows_all_keys = false;
 };
 

@@ -347,6 +347,7 @@ PackFlights fly_packs(const MissionVariant& mission, const SimulationOptions& st
     all.total.mission = all.setup.name;
     all.total.reserve_soc_percent = all.setup.reserve_soc_percent;
     all.total.power_model = all.setup.power_model;
+    all.total.uncertain = all.setup.uncertain;
     ends_s.resize(std::min(ends_s.size(), packs.count));
     if (all.suffice) ends_s = divider.balanced(ends_s);
     CruisePart part;

@@ -73,7 +73,7 @@ MissionSetup actual_with_lines(const MissionSetup& first, const MissionSetup& ch
     const double longer = actual.duration_s[Phase::cruise] / first.duration_s[Phase::cruise];
     auto flown = actual;
     flown.survey = chosen.survey;
-    flown.has_steep_turn = chosen.has_steep_turn;
+    flown.uncertain = chosen.uncertain;
     flown.cruise_level = chosen.cruise_level;
     flown.duration_s[Phase::cruise] = chosen.duration_s[Phase::cruise] * longer;
     if (auto& measured = flown.measured_power[Phase::cruise]) {

@@ -145,6 +145,7 @@ MissionSummary summarize(const MissionSetup& mission, const std::vector<LoadSegm
     add_energies(segments, summary);
     summary.feasible = !summary.undeliverable && !summary.depleted_at_s && !summary.cut_off_at_s;
     summary.power_model = mission.power_model;
+    summary.uncertain = mission.uncertain;
     if (mission.survey && mission.survey->is_chosen) {
         summary.lines = mission.survey->layout;
         summary.coverage = mission.survey->coverage;

@@ -99,6 +99,9 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
     const auto schedule = [](const R& summary) {
         return summary.schedule == ScheduleOrigin::given ? std::nullopt : std::optional(to_string(summary.schedule));
     };
+    const auto uncertain = [](const R& summary) {
+        return summary.uncertain.empty() ? std::nullopt : std::optional(summary.uncertain);
+    };
     return list_fields<R>(
         field("mission", &R::mission, "name of the mission", column{}, csv_column{}),
         field("schedule", schedule, "origin of the schedule, unless the mission states it", column_if_any(),
@@ -108,6 +111,7 @@ Fields<MissionSummary> record_fields(const MissionSummary*) {
         field("reserve_soc_percent", &R::reserve_soc_percent, "reserve that the mission demands",
               column{"reserve [%]", ".2f"}, csv_column{}),
         field("keeps_reserve", &R::keeps_reserve, "the battery lasts, and the reserve is left", csv_column{}),
+        field("uncertain", uncertain, "why that may be wrong whatever its probability, if it may", optional_key{}),
         field("energy_wh", &R::energy_wh, "demanded by the whole mission", column{"energy [Wh]"}, csv_column{}),
         field("mechanical_energy_wh", &R::mechanical_energy_wh, "part of flying", column{"mechanical [Wh]"},
               csv_column{}),

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::cli {
 namespace {
@@ -43,6 +44,9 @@ std::optional<std::string> reason_missed(const Requirement& requirement, const m
     if (!requirement.text) return std::nullopt;
     const auto& [text, probability] = requirement;
     if (summary.undeliverable || (!probability && !summary.keeps_reserve)) return describe(summary);
+    if (!summary.uncertain.empty())
+        return fmt::format("{}: whether it keeps the reserve is uncertain: {}", summary.mission,
+                           fmt::join(summary.uncertain, "; "));
     if (!probability) return std::nullopt;
     const auto& drawn = summary.samples;
     if (!drawn || !drawn->variability_is_known)

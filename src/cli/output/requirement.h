@@ -19,8 +19,9 @@ struct Requirement {
 /// --require. A probability draws flights, 10,000 unless --samples states another number.
 void add_require_option(Options& options, Requirement& requirement, SamplingArguments& sampling);
 
-/// The reason why a mission misses what is required; std::nullopt where it does not. A probability is that of the drawn
-/// flights; without them, or where their variability is unknown, it is missed.
+/// Returns the reason why a mission misses what is required; std::nullopt where it does not. It is missed where a part
+/// of the mission is uncertain. A probability is that of the drawn flights; without them, or where their variability is
+/// unknown, it is missed.
 std::optional<std::string> reason_missed(const Requirement& requirement, const mission::MissionSummary& summary);
 
 /// Reports an error, and returns requirement_missed.

@@ -72,6 +72,19 @@ std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arg
                                   : std::vector<mission::Disturbance>();
 }
 
+void add_plan_options(Options& options, mission::PlanToFly& plan, const std::vector<std::string>& needs) {
+    options.add("block", plan.blocks, {.value = "NAME", .needs = needs},
+                "a block of a flight plan of Paparazzi; may be given several times, in the order of the flight");
+    options.add("airspeed", plan.airspeed_m_per_s,
+                {.value = "M_PER_S", .min = 0.0, .max = path::max_m_per_s, .above_min = true, .needs = needs},
+                "airspeed along the plan; default: that of the plan, or of the model's flights");
+    options.add("spacing", plan.spacing_m,
+                {.value = "M", .min = path::min_radius_m, .max = path::max_radius_m, .needs = needs},
+                "between the lines over an area; default: of turns with a bank of 30 degrees, of rotorcraft 25 m");
+    options.add("heading", plan.heading_deg, {.value = "DEG", .min = 0.0, .max = 360.0, .needs = needs},
+                "course of these lines; default: with the fewest turns");
+}
+
 path::Wind parse_wind(const std::string& text, bool needs_direction) {
     constexpr double max_m_per_s = 100.0;
     constexpr double degree_per_turn = 360.0;

@@ -4,6 +4,7 @@
 #include "mechanical/model_fit.h"
 #include "mission/disturbance.h"
 #include "mission/mission.h"
+#include "mission/new_mission_path.h"
 #include "mission/sampled_flights.h"
 
 #include <cstddef>
@@ -58,6 +59,10 @@ std::optional<mission::SamplingOptions> sampling_options(const SamplingArguments
 /// The disturbances of --disturb for a mission.
 std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arguments,
                                                     const mission::MissionSetup& mission);
+
+/// How a plan is flown: --block, --airspeed, and --spacing and --heading of lines over an area. `needs` are options of
+/// which one has to be given with each.
+void add_plan_options(Options& options, mission::PlanToFly& plan, const std::vector<std::string>& needs);
 
 /// The wind of --wind: "6@250" is 6 m/s from 250 degrees. Without a direction it is 0, unless `needs_direction`. Throws
 /// UsageError for another text.

@@ -335,6 +335,7 @@ path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaul
         read_path_airspeed(path, mission, defaults);  // which throws
     }
     for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
+    for (const auto& text : plan.missing) mission.uncertain.push_back("a part of the plan is not flown: " + text);
     auto& entries = plan.entries;
     defaults.starts_at_first_place = plan.starts_at_first_place;
     if (plan.is_above_home) defaults.is_above_ground = true;
@@ -414,35 +415,6 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
         throw InputError(path.where("turn_radius_m"), "a rotorcraft brakes before corners: it has no turn_radius_m",
                          "leave it out");
     return limits;
-}
-
-/// Rates of the model's take-offs and landings, else the highest that were flown.
-path::ClimbRates flown_rates(const mechanical::MechanicalModel& model) {
-    path::ClimbRates rates;
-    if (const auto& physical = model.physical) {
-        if (physical->climb_m_per_s.high > 0.0) rates.climb_m_per_s = physical->climb_m_per_s.high;
-        if (physical->climb_m_per_s.low < 0.0) rates.descent_m_per_s = -physical->climb_m_per_s.low;
-    }
-    if (const auto& up = model.phases[Phase::takeoff].heights) rates.climb_m_per_s = up->m_per_s;
-    if (const auto& down = model.phases[Phase::landing].heights) rates.descent_m_per_s = down->m_per_s;
-    return rates;
-}
-
-/// Notes the first change of height above one place that has its rate from the model.
-void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission) {
-    for (const auto& element : path.elements) {
-        const auto* hold = std::get_if<path::Hold>(&element.shape);
-        const double change_m = element.altitude_change_m;
-        const double rate = (change_m > 0.0 ? rates.climb_m_per_s : rates.descent_m_per_s).value_or(0.0);
-        if (hold == nullptr || change_m == 0.0 || element.climb_rate_m_per_s ||
-            hold->time_s != std::abs(change_m) / rate)
-            continue;
-        mission.notes.push_back(
-            fmt::format("path: {}: {:.0f} m of height above one place are flown at {:.2g} m/s, as "
-                        "the model's flights did",
-                        element.name, std::abs(change_m), rate));
-        return;
-    }
 }
 
 /// The path as it is drawn, and where it is.
@@ -575,7 +547,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     plan.drawn = std::exchange(plan.path, std::move(turned.path));
     const auto flown = compute_trajectory(plan.path, plan.wind);
     if (mission.survey && !reading.path_times) set_line_times(plan.path, flown, *mission.survey);
-    mission.has_steep_turn = has_steep_turn(flown);
+    if (has_steep_turn(flown))
+        mission.uncertain.emplace_back("a turn takes a bank that the aircraft may not be able to fly");
     if (is_physical)
         for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));

@@ -35,6 +35,33 @@ std::string duration_note(Phase phase, double height_m, double duration_s, const
 
 }  // namespace
 
+path::ClimbRates flown_rates(const mechanical::MechanicalModel& model) {
+    path::ClimbRates rates;
+    if (const auto& physical = model.physical) {
+        if (physical->climb_m_per_s.high > 0.0) rates.climb_m_per_s = physical->climb_m_per_s.high;
+        if (physical->climb_m_per_s.low < 0.0) rates.descent_m_per_s = -physical->climb_m_per_s.low;
+    }
+    if (const auto& up = model.phases[Phase::takeoff].heights) rates.climb_m_per_s = up->m_per_s;
+    if (const auto& down = model.phases[Phase::landing].heights) rates.descent_m_per_s = down->m_per_s;
+    return rates;
+}
+
+void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission) {
+    for (const auto& element : path.elements) {
+        const auto* hold = std::get_if<path::Hold>(&element.shape);
+        const double change_m = element.altitude_change_m;
+        const double rate = (change_m > 0.0 ? rates.climb_m_per_s : rates.descent_m_per_s).value_or(0.0);
+        if (hold == nullptr || change_m == 0.0 || element.climb_rate_m_per_s ||
+            hold->time_s != std::abs(change_m) / rate)
+            continue;
+        mission.notes.push_back(
+            fmt::format("path: {}: {:.0f} m of height above one place are flown at {:.2g} m/s, as "
+                        "the model's flights did",
+                        element.name, std::abs(change_m), rate));
+        return;
+    }
+}
+
 void set_takeoff_and_landing(MissionSetup& mission) {
     const auto& plan = *mission.cruise_path->plan;
     if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return;

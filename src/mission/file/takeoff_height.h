@@ -4,6 +4,12 @@
 
 namespace flightwatt::mission {
 
+/// Returns the rates of a model's flights with which changes of height above one place are flown.
+path::ClimbRates flown_rates(const mechanical::MechanicalModel& model);
+
+/// Notes the first change of height above one place that has its rate from the model.
+void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission);
+
 /// Sets how long take-off and landing last by the altitudes at the ends of the mission's path, if these are known to be
 /// above the ground and the mission does not state the duration. Notes it, and whether it makes the result uncertain.
 void set_takeoff_and_landing(MissionSetup& mission);

@@ -51,7 +51,7 @@ bool is_end_of_log(const flight::Track& clock, double time_s) {
 /// A page of more flights compresses their details, which are of fewer pixel columns: it is small and opens as quickly.
 constexpr std::size_t max_plain_flights = 20;
 constexpr std::size_t plot_columns = 250;
-constexpr std::size_t plot_columns_of_many = 100;
+constexpr std::size_t plot_columns_of_many = 90;
 constexpr int time_decimals = 2;
 
 /// Decimals with which the largest value has four digits.

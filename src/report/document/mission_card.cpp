@@ -40,8 +40,9 @@ std::string describe_end(const mission::MissionSummary& summary) {
 }
 
 std::string describe_landing(const SimulatedMission& simulated) {
-    return describe_end(simulated.simulation.summary) +
-           (simulated.mission.setup.has_steep_turn ? ", if its turns can be flown" : "");
+    const auto& summary = simulated.simulation.summary;
+    if (summary.uncertain.empty()) return describe_end(summary);
+    return fmt::format("{}, but {}", describe_end(summary), fmt::join(summary.uncertain, "; "));
 }
 
 std::string outcome_words(Outcome outcome, const mission::MissionSummary& summary) {
@@ -49,8 +50,8 @@ std::string outcome_words(Outcome outcome, const mission::MissionSummary& summar
     switch (outcome) {
         case Outcome::keeps:
             return has_reserve ? "keeps reserve" : "lasts";
-        case Outcome::is_steep:
-            return "turns too steep";
+        case Outcome::is_uncertain:
+            return "uncertain";
         case Outcome::may_miss:
             return has_reserve ? "may miss reserve" : "may run empty";
         case Outcome::misses:
@@ -128,8 +129,8 @@ std::string describe_help(const SimulatedMission& simulated, const MissionAssess
         return fmt::format(
             "The longest flight that {} {}", describe_aim(simulated.simulation.summary.reserve_soc_percent),
             answer.reach_at_95_percent ? "in 95 of 100 flights" : "as modelled: how flights differ is unknown");
-    if (outcome == Outcome::is_steep) return "Turns of a larger radius, or a lower airspeed in them";
     const double spare_s = is_cruise ? reach->limit.value - planned_cruise_s(simulated) : 0.0;
+    if (outcome == Outcome::is_uncertain) return "";
     if (outcome == Outcome::keeps)
         return spare_s >= 1.0 ? whole_seconds(std::floor(spare_s)) + " of cruise to spare" : "";
     std::vector<std::string> ways;

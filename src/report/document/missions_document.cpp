@@ -30,12 +30,11 @@ struct OutcomeWords {
 };
 
 /// In the order of Outcome.
-constexpr std::array<OutcomeWords, 5> known_outcomes{
-    {{"keeps", "lands as planned", "land as planned"},
-     {"may-miss", "flies turns that it may not be able to", "fly turns that they may not be able to"},
-     {"may-miss", "may miss the reserve", "may miss the reserve"},
-     {"misses", "lands below the reserve", "land below the reserve"},
-     {"fails", "does not reach its end", "do not reach their end"}}};
+constexpr std::array<OutcomeWords, 5> known_outcomes{{{"keeps", "lands as planned", "land as planned"},
+                                                      {"may-miss", "is uncertain", "are uncertain"},
+                                                      {"may-miss", "may miss the reserve", "may miss the reserve"},
+                                                      {"misses", "lands below the reserve", "land below the reserve"},
+                                                      {"fails", "does not reach its end", "do not reach their end"}}};
 
 const OutcomeWords& words_of(Outcome outcome) { return known_outcomes.at(static_cast<std::size_t>(outcome)); }
 
@@ -199,7 +198,7 @@ std::string missions_headline(const Findings& findings) {
         return fmt::format("{} missions land as planned",
                            cards.size() == 2 ? "Both" : "All " + number_word(cards.size()));
     std::vector<std::string> parts;
-    for (const auto outcome : {Outcome::fails, Outcome::misses, Outcome::may_miss, Outcome::is_steep}) {
+    for (const auto outcome : {Outcome::fails, Outcome::misses, Outcome::may_miss, Outcome::is_uncertain}) {
         const auto is_this = [&](const MissionCard& card) { return card.outcome == outcome; };
         const auto count = static_cast<std::size_t>(std::ranges::count_if(cards, is_this));
         if (count == 0 || (outcome == Outcome::may_miss && !parts.empty())) continue;

@@ -141,7 +141,7 @@ Outcome outcome_of(const SimulatedMission& simulated) {
     if (simulated.is_longest) return Outcome::keeps;
     if (outcome != Outcome::keeps) return outcome;
     if (!keeps_by_flights) return Outcome::may_miss;
-    return simulated.mission.setup.has_steep_turn ? Outcome::is_steep : outcome;
+    return summary.uncertain.empty() ? outcome : Outcome::is_uncertain;
 }
 
 std::vector<std::size_t> worst_first(std::span<const SimulatedMission> missions) {

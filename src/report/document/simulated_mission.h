@@ -50,11 +50,11 @@ MissionAssessment assess_mission(const SimulatedMission& simulated, const missio
 
 /// The outcomes of a mission, the best first.
 enum class Outcome {
-    keeps,     ///< keeps the reserve with a probability of 95 % or more, or as modelled without a known one
-    is_steep,  ///< the same, with turns that the aircraft may not be able to fly
-    may_miss,  ///< keeps it as modelled, but with less probability, or not with the capacity by the pack's flights
-    misses,    ///< lands below the reserve as modelled
-    fails,     ///< runs empty, is cut off, or asks for more power than the battery can deliver
+    keeps,         ///< keeps the reserve with a probability of 95 % or more, or as modelled without a known one
+    is_uncertain,  ///< the same, with a part that is not flown, that the aircraft may not be able to fly, or extrapolated
+    may_miss,      ///< keeps it as modelled, but with less probability, or not with the capacity by the pack's flights
+    misses,        ///< lands below the reserve as modelled
+    fails,         ///< runs empty, is cut off, or asks for more power than the battery can deliver
 };
 
 /// Returns the probability of landing below the reserve; std::nullopt if the variability of flights is unknown.

@@ -268,7 +268,7 @@ TEST(PathToml, FliesTurnsWithinTheBankAndRadiusThatItStates) {
     ASSERT_FALSE(narrow.setup.notes.empty());
     EXPECT_NE(narrow.setup.notes.front().find("leg 1: circles of 9 m need a bank of more than 45 degrees"),
               std::string::npos);
-    EXPECT_FALSE(narrow.setup.has_steep_turn);
+    EXPECT_TRUE(narrow.setup.uncertain.empty());
 }
 
 TEST(PathToml, FliesThePlansSpeedWhereItStatesNone) {

@@ -71,8 +71,8 @@ TEST(MissionsHeadline, CountsOutcomesTheWorstFirst) {
               "One of three missions runs empty");
     auto both = findings_of_files({"computing-only", "computing-only"});
     EXPECT_EQ(missions_headline(both), "Both missions land as planned");
-    both.missions.front().mission.setup.has_steep_turn = true;
-    EXPECT_EQ(missions_headline(both), "One of two missions flies turns that it may not be able to");
+    both.missions.front().simulation.summary.uncertain = {"a part of the plan is not flown"};
+    EXPECT_EQ(missions_headline(both), "One of two missions is uncertain");
     EXPECT_EQ(missions_headline({}), "");
 }
 

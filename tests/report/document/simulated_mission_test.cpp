@@ -138,15 +138,13 @@ TEST(MissionAnswer, IsNotSureOfALandingThatTheFlightsContradict) {
     EXPECT_FALSE(record_json(MissionOutput{&computing, &answer}).contains("with_capacity_of_flights"));
 }
 
-TEST(MissionAnswer, QualifiesALandingAfterTurnsThatAreTooSteep) {
+TEST(MissionAnswer, QualifiesALandingOfWhichAPartIsUncertain) {
     auto steep = test::paper_mission("computing-only");
-    steep.setup.has_steep_turn = true;
-    steep.setup.notes = {"survey: such a turn takes a bank of 78 degrees"};
+    steep.setup.uncertain = {"a turn takes a bank of 78 degrees"};
     const auto simulated = simulate_for_report({steep}).front();
-    EXPECT_EQ(outcome_of(simulated), Outcome::is_steep);
-    const auto lines = card_lines(simulated, {});
-    EXPECT_THAT(lines.front(), testing::MatchesRegex("Turns too steep: Lands with .*, if its turns can be flown"));
-    EXPECT_THAT(lines, Contains("Warning: survey: such a turn takes a bank of 78 degrees"));
+    EXPECT_EQ(outcome_of(simulated), Outcome::is_uncertain);
+    EXPECT_THAT(card_lines(simulated, {}).front(),
+                testing::MatchesRegex("Uncertain: Lands with .*, but a turn takes a bank of 78 degrees"));
 }
 
 TEST(MissionAnswer, StatesThatTheLongestFlightIsAtTheLimit) {

@@ -178,7 +178,7 @@ export interface AircraftPanel {
 
 // ---- missions (docs/reference/simulate.md, report.md)
 
-/// keeps: in 95 of 100 flights, or as modelled; may-miss: also turns that may be too steep; misses: lands below the
+/// keeps: in 95 of 100 flights, or as modelled; may-miss: also where a part is uncertain; misses: lands below the
 /// reserve; fails: runs empty, is cut off or lacks power.
 export type Outcome = "keeps" | "may-miss" | "misses" | "fails";
 

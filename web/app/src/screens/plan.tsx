@@ -8,8 +8,8 @@ import { TrackMap, type Place, type Spot, type Track } from "../ui/map";
 import { Plot } from "../ui/plot";
 import { Slider } from "../ui/slider";
 import { track } from "../work/csv";
-import type { PlanBlock, Simulation } from "../work/documents";
-import { blocksOf, flyPlan, planCommand, type FlownPlan, type PlanOptions } from "../work/flown_plan";
+import type { PlanBlock, PlanRemedy, Simulation } from "../work/documents";
+import { blocksOf, flyPlan, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
 import { useLatest } from "../work/latest";
 import { areaFile, shapeOf, type PlanShape } from "../work/plan_shapes";
 import { errorsOf, type Aircraft, type Answered, type Curve, type Project, type State } from "../work/project";
@@ -52,6 +52,12 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
     grade: "doubt",
     title: "May miss the reserve",
     detail: lands,
+    chance: words,
+  };
+  if (simulation.uncertain) return {
+    grade: "doubt",
+    title: "Perhaps",
+    detail: `${lands.slice(0, -1)}, but ${simulation.uncertain.join("; ")}.`,
     chance: words,
   };
   return { grade: "good", title: `Fits ${packs}`, detail: lands, chance: words };
@@ -162,41 +168,68 @@ function PlanSliders({ flown, options, change }: {
   );
 }
 
-/// Changes that may make a plan fit, each simulated.
+interface Help extends Pick<PlanRemedy, "text" | "suffices" | "probability"> {
+  /// Absent: none of this page's.
+  change?: Partial<PlanOptions>;
+}
+
+const changed_by: Partial<Record<PlanRemedy["kind"], keyof PlanOptions>> = {
+  airspeed: "airspeed",
+  heading: "heading",
+  spacing: "spacing",
+};
+
+/// Changes that may make a plan fit, each simulated: another pack, and of one pack what `check` tries.
 function useHelp(project: Project, aircraft: Aircraft, answered: Answered | undefined, flown: FlownPlan | null) {
-  const [help, setHelp] = useState<{ words: string; change: Partial<PlanOptions>; curve: Curve }[]>([]);
+  const [help, setHelp] = useState<Help[]>([]);
   useEffect(() => {
     setHelp([]);
-    if (!answered || !flown || verdictOf(flown.curve).grade === "good" || /\.toml$/.test(flown.options.plan)) return;
+    if (!answered || !flown || verdictOf(flown.curve).grade === "good" || /\.toml$/i.test(flown.options.plan)) return;
     let is_wanted = true;
-    const tries: { words: string; change: Partial<PlanOptions> }[] = [];
-    const { packs } = flown.options;
-    if (!flown.curve.simulation.keeps_reserve) tries.push({
-      words: `${packs + 1} packs`,
-      change: { packs: packs + 1 },
-    });
-    if (flown.spacing != null) {
-      const spacing = Math.round(flown.spacing * 1.5);
-      tries.push({ words: `Spacing ${spacing} m instead of ${number(flown.spacing, 0)}`, change: { spacing } });
-    }
-    const best = answered.answer.best_speeds.find((one) =>
-      /range/.test(one.purpose) && !one.below_flown && !one.above_flown)?.airspeed_m_per_s;
-    if (best) tries.push({
-      words: `Airspeed ${number(best, 1)} m/s`,
-      change: { airspeed: Math.round(10 * best) / 10 },
-    });
+    const { options, curve } = flown;
+    const add = (more: Help[]) => is_wanted && setHelp((before) => [...before, ...more]);
     void (async () => {
-      for (const one of tries) {
-        if (!is_wanted) return;
-        const found = await flyPlan(project, aircraft, answered, { ...flown.options, ...one.change });
-        if (is_wanted && typeof found !== "string") setHelp((before) => [...before, { ...one, curve: found.curve }]);
+      if (!curve.simulation.keeps_reserve) {
+        const packs = curve.simulation.packs_needed ?? options.packs + 1;
+        const found = await flyPlan(project, aircraft, answered, { ...options, packs });
+        if (typeof found !== "string") add([{
+          text: `${packs} packs`,
+          change: { packs },
+          suffices: verdictOf(found.curve).grade === "good",
+          probability: null,
+        }]);
       }
+      if (!is_wanted || options.packs > 1) return;
+      const remedies = await remediesOf(project, aircraft, answered, options);
+      add(remedies.map(({ kind, value, ...rest }) => {
+        const option = changed_by[kind];
+        return { ...rest, change: option && { [option]: value } };
+      }));
     })();
     return () => {
       is_wanted = false;
     };
   }, [flown]);
   return help;
+}
+
+/// A change that may help; those of this page are made by a click.
+function HelpLine({ help: { text, suffices, probability, change }, onChange }: {
+  help: Help;
+  onChange: (change: Partial<PlanOptions>) => void;
+}) {
+  const words = suffices ? "enough" : "not enough alone";
+  const line = (
+    <>
+      <Mark grade={suffices ? "good" : "doubt"} />
+      <span>
+        <b>{text}</b>
+        <span class="under">{probability != null ? `${words}, ${chance(probability)}` : words}</span>
+      </span>
+    </>
+  );
+  if (!change) return <p class="help">{line}</p>;
+  return <button type="button" class="help" onClick={() => onChange(change)}>{line}<Icon name="arrow" /></button>;
 }
 
 function useShape(project: Project, plan: string): PlanShape {
@@ -294,6 +327,10 @@ function SoftwareStrip({ curve }: { curve: Curve }) {
   );
 }
 
+const plan_formats = [
+  ["plan", "Plan, QGroundControl"], ["waypoints", "Plan, Mission Planner"], ["blocks", "Plan, Paparazzi"],
+] as const;
+
 const export_formats = [
   [
     "failsafe-ardupilot",
@@ -311,12 +348,27 @@ const export_formats = [
   ],
 ] as const;
 
-function SaveButtons({ project, flown }: { project: Project; flown: FlownPlan }) {
-  const [format, setFormat] = useState<string>(export_formats[0][0]);
+function SaveButtons({ project, aircraft, answered, flown }: {
+  project: Project;
+  aircraft: Aircraft;
+  answered?: Answered;
+  flown: FlownPlan;
+}) {
+  const is_mission = /\.toml$/i.test(flown.options.plan);
+  const plans = is_mission || !answered ? [] : plan_formats;
+  const [chosen, setFormat] = useState("");
+  const format = chosen || (plans[0] ?? export_formats[0])[0];
   const [failed, setFailed] = useState("");
   const name = fileName(flown.options.plan).replace(/\.\w+$/, "");
+  const savePlan = async () => {
+    if (!answered) return;
+    const files = await planFiles(project, aircraft, answered, flown.options, format);
+    setFailed(typeof files === "string" ? files : "");
+    if (typeof files === "string") return;
+    for (const file of files) save(`${name}-${file.name}`, file.text, "text/plain");
+  };
   const saveExport = async () => {
-    const path = /\.toml$/.test(flown.options.plan) ? flown.options.plan : "plan-mission.toml";
+    const path = is_mission ? flown.options.plan : "plan-mission.toml";
     const result = await project.run(["export", path, "--format", format]);
     if (result.code !== 0) return setFailed(errorsOf(result));
     setFailed("");
@@ -343,11 +395,15 @@ function SaveButtons({ project, flown }: { project: Project; flown: FlownPlan })
           value={format}
           onChange={(event) => setFormat(event.currentTarget.value)}
         >
-          {export_formats.map(([id, words]) => (
+          {[...plans, ...export_formats].map(([id, words]) => (
             <option value={id}>{words}</option>
           ))}
         </select>
-        <button type="button" class="quiet" onClick={() => void saveExport()}>
+        <button
+          type="button"
+          class="quiet"
+          onClick={() => void (plans.some(([id]) => id === format) ? savePlan() : saveExport())}
+        >
           <Icon name="save" /> File
         </button>
       </p>
@@ -534,7 +590,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           />
         )}
       </div>
-      <Command line={planCommand(aircraft.folder, options ?? no_plan, answered?.question.payload_kg)} />
+      <Command line={planCommand(aircraft.folder, options ?? no_plan, answered?.question)} />
     </>
   );
 }
@@ -572,24 +628,10 @@ function PlanSide({ project, aircraft, answered, flown, options, blocks, change 
   return (
     <section class="card plan-side" aria-label="Change the plan">
       {help.length > 0 && <h2>What would help</h2>}
-      {help.map(({ words, change: next, curve }) => {
-        const verdict = verdictOf(curve);
-        return (
-          <button type="button" class="help" onClick={() => change(next)}>
-            <Mark grade={verdict.grade} />
-            <span>
-              <b>{words}</b>
-              <span class="under">
-                {verdict.chance ? `${verdict.title.toLowerCase()}, ${verdict.chance}` : verdict.title.toLowerCase()}
-              </span>
-            </span>
-            <Icon name="arrow" />
-          </button>
-        );
-      })}
+      {help.map((one) => <HelpLine help={one} onChange={change} />)}
       <BlockChoice blocks={blocks} options={options} change={change} />
       {flown && !/\.toml$/i.test(options.plan) && <PlanSliders flown={flown} options={options} change={change} />}
-      {flown && <SaveButtons project={project} flown={flown} />}
+      {flown && <SaveButtons project={project} aircraft={aircraft} answered={answered} flown={flown} />}
       {flown && (
         <Folded title="What it rests on">
           <Facts

@@ -118,6 +118,8 @@ export interface Simulation {
   final_soc_percent: number;
   reserve_soc_percent: number;
   keeps_reserve: boolean;
+  /// Why that may be wrong whatever its probability.
+  uncertain?: string[];
   energy_wh: number;
   compute_energy_wh: number;
   duration_s: number;
@@ -130,6 +132,16 @@ export interface Simulation {
   packs_needed?: number;
   on_ground_s?: number;
   flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null }[];
+}
+
+/// A change of a plan that may make it fit, of `flightwatt check --json`.
+export interface PlanRemedy {
+  kind: "airspeed" | "heading" | "spacing" | "part" | "pack" | "payload";
+  value: number;
+  text: string;
+  final_soc_percent: number | null;
+  probability: number | null;
+  suffices: boolean;
 }
 
 /// `flightwatt path --json` of a mission.

@@ -1,9 +1,9 @@
 // A plan flown by an aircraft: the commands new-mission, path and simulate, one after the other.
 import type { Engine } from "../engine/engine";
 import { numbers, parseCsv, texts } from "./csv";
-import type { PathSummary, PlanBlock } from "./documents";
+import type { PathSummary, PlanBlock, PlanRemedy, Simulation } from "./documents";
 import { errorsOf, type Aircraft, type Answered, type Curve, type Project } from "./project";
-import { quoted } from "./question";
+import { quoted, type Question } from "./question";
 
 export interface PlanOptions {
   plan: string;
@@ -33,35 +33,34 @@ export interface FlownPlan {
 
 const mission_name = "plan-mission.toml";
 
-/// Returns the options of new-mission.
-export function newMissionArguments(folder: string, options: PlanOptions, payload_kg?: number): string[] {
+/// Returns the options of new-mission and check: the aircraft, how the plan is flown, and what is asked of it.
+function flightOptions(folder: string, options: PlanOptions, question: Question): string[] {
   const wind = options.wind ? `${options.wind}@${options.wind_from ?? 0}` : undefined;
+  const option = (name: string, value: number | string | undefined) => (value != null ? [`--${name}`, String(value)] : []);
   return [
-    "new-mission", "--model", `${folder}/model.toml`, "--battery", `${folder}/answer-pack.toml`, "--plan", options.plan,
+    "--model", `${folder}/model.toml`, "--battery", `${folder}/answer-pack.toml`,
     ...options.blocks.flatMap((block) => ["--block", block]),
-    ...(options.airspeed != null ? ["--airspeed", String(options.airspeed)] : []),
-    ...(wind ? ["--wind", wind] : []),
-    ...(options.packs > 1 ? ["--packs", String(options.packs)] : []),
-    ...(payload_kg != null ? ["--payload", String(payload_kg)] : []),
+    ...option("airspeed", options.airspeed), ...option("spacing", options.spacing), ...option("heading", options.heading),
+    ...option("wind", wind), ...option("reserve", question.reserve), ...option("payload", question.payload_kg),
+    ...(question.payload_kg != null ? option("mass", question.mass_kg) : []),
   ];
 }
 
-/// Returns the command that sets keys of the mission, or nothing.
-function editCommand({ spacing, heading }: PlanOptions): string {
-  const keys = { spacing_m: spacing, heading_deg: heading };
-  const edits = Object.entries(keys).filter(([, value]) => value != null);
-  const expressions = edits.map(([key, value]) => `-e ${quoted(`s/^${key} = .*/${key} = ${value}/`)}`);
-  return expressions.length > 0 ? ` && sed -i ${expressions.join(" ")} plan.toml` : "";
+/// Returns the command that makes a mission of a plan; with `has_packs` one pack, too, is a flight of [packs].
+function newMissionArguments(folder: string, options: PlanOptions, question: Question, has_packs = false): string[] {
+  return [
+    "new-mission", ...flightOptions(folder, options, question), "--plan", options.plan,
+    ...(options.packs > 1 || has_packs ? ["--packs", String(options.packs)] : []),
+  ];
 }
 
 /// Returns the commands that give the same.
-export function planCommand(folder: string, options: PlanOptions, payload_kg?: number): string {
+export function planCommand(folder: string, options: PlanOptions, question: Question = {}): string {
   const samples = options.packs > 1 ? "" : ` --samples ${drawn_flights}`;
   const mission = quoted(options.plan.replace(/^missions\//, ""));
   if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${mission}${samples}`;
-  const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, payload_kg);
-  const make = `flightwatt ${args.map(quoted).join(" ")} -o plan.toml`;
-  return `${make}${editCommand(options)} && flightwatt simulate plan.toml${samples}`;
+  const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, question);
+  return `flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}`;
 }
 
 /// Of a plan, for its chance.
@@ -84,23 +83,70 @@ async function missionOf(
   engine: Engine,
   folder: string,
   options: PlanOptions,
-  payload_kg?: number,
+  question: Question,
 ): Promise<{ file: string; err: string } | string> {
   if (/\.toml$/i.test(options.plan)) return { file: options.plan, err: "" };
   const made = await engine.run([
-    ...newMissionArguments(folder, options, payload_kg),
+    ...newMissionArguments(folder, options, question),
     "-o",
     mission_name,
     "--force",
     "--name",
     "plan",
   ]);
-  if (made.code !== 0) return errorsOf(made);
-  let text = new TextDecoder().decode(await engine.read(mission_name));
-  if (options.spacing != null) text = text.replace(/^spacing_m = .*$/m, `spacing_m = ${options.spacing}`);
-  if (options.heading != null) text = text.replace(/^heading_deg = .*$/m, `heading_deg = ${options.heading}`);
-  await engine.write(mission_name, new TextEncoder().encode(text));
-  return { file: mission_name, err: made.err };
+  return made.code === 0 ? { file: mission_name, err: made.err } : errorsOf(made);
+}
+
+/// The files that an autopilot flies, one a pack, as `plan --packs` writes them.
+export interface PlanFile {
+  name: string;
+  text: string;
+}
+
+/// Returns the files of a plan's flights in a format of `plan --format`, or why there are none.
+export async function planFiles(
+  project: Project,
+  aircraft: Aircraft,
+  answered: Answered,
+  options: PlanOptions,
+  format: string,
+): Promise<PlanFile[] | string> {
+  const [mission, folder] = ["plan-packs.toml", "plan-packs"];
+  const args = newMissionArguments(aircraft.folder, options, answered.question, true);
+  return project.withAnswer(aircraft.id, answered, async (engine) => {
+    const made = await engine.run([...args, "-o", mission, "--force", "--name", "plan"]);
+    if (made.code !== 0) return errorsOf(made);
+    const planned = await engine.run(["plan", mission, "--packs", "--format", format, "-o", folder, "--json"]);
+    if (planned.code !== 0) return errorsOf(planned);
+    const { flights } = JSON.parse(planned.out) as Simulation;
+    const written = (await engine.list()).map(({ path }) => path.replace(/^\//, ""))
+      .filter((path) => path.startsWith(`${folder}/`) && !/\.(toml|json)$/.test(path));
+    const names = new Set(flights?.map(({ pack }) => `pack-${pack}`));
+    const files: PlanFile[] = [];
+    for (const path of written) {
+      const name = path.slice(folder.length + 1);
+      // An earlier run may have left those of more packs, and of another format.
+      if (names.has(name.replace(/\.\w+$/, "")) && name.endsWith(plan_endings[format] ?? ""))
+        files.push({ name, text: await project.text(path) });
+    }
+    return files.length > 0 ? files : "No number of packs flies it with the reserve: there are no files.";
+  });
+}
+
+/// The ending of the files of each format of `plan --format`.
+const plan_endings: Record<string, string> = { plan: ".plan", waypoints: ".waypoints", blocks: ".xml" };
+
+/// Returns the changes that may make a plan fit one pack, each as `check` computed it.
+export async function remediesOf(
+  project: Project,
+  aircraft: Aircraft,
+  answered: Answered,
+  options: PlanOptions,
+): Promise<PlanRemedy[]> {
+  const args = ["check", options.plan, ...flightOptions(aircraft.folder, options, answered.question), "--json", "--quiet"];
+  const result = await project.runOnAnswer(aircraft.id, answered, args);
+  if (!result.out) return [];
+  return (JSON.parse(result.out) as { plans: { remedies: PlanRemedy[] }[] }).plans[0]?.remedies ?? [];
 }
 
 /// Flies a plan; returns why it cannot be flown where it cannot.
@@ -111,8 +157,8 @@ export async function flyPlan(
   options: PlanOptions,
 ): Promise<FlownPlan | string> {
   return project.withAnswer(aircraft.id, answered, async (engine) => {
-    const { payload_kg } = answered.question;
-    let made = await missionOf(engine, aircraft.folder, options, payload_kg);
+    const { question } = answered;
+    let made = await missionOf(engine, aircraft.folder, options, question);
     const flown = answered.answer.airspeed_m_per_s.value;
     // A model that does not know what airspeed costs is flown at the speed of its flights, as the program asks for.
     if (typeof made === "string" && /--airspeed/.test(made) && options.airspeed == null && flown != null)
@@ -120,7 +166,7 @@ export async function flyPlan(
         engine,
         aircraft.folder,
         { ...options, airspeed: Math.round(10 * flown) / 10 },
-        payload_kg,
+        question,
       );
     if (typeof made === "string") return made;
     const curve = await project.curveOrError(made.file, drawn_flights);
