@@ -155,7 +155,7 @@ def memory_of_archive(bench, originals):
         shutil.rmtree(out)
         shutil.rmtree(folder)
     ratio = memory_mb[1] / memory_mb[0]
-    goal = at_most(300, "MB")
+    goal = at_most(500, "MB")
     return Row("memory of a batch", f"{many} logs", memory_mb[1], "MB", goal, f"{few} logs", memory_mb[0], ratio)
 
 

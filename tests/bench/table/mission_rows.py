@@ -12,17 +12,17 @@ SURVEY = "missions/synthetic/survey-path.toml"
 
 
 def simulated(bench):
-    """What a thousand flights add: at 100,000 a second and core 10 ms of the processor."""
+    """What a thousand flights add: at 100,000 a second and core 10 ms of the processor, at 40,000 25 ms."""
     say("simulate, with samples and without")
     rows = []
-    for title, mission in (("Thévenin pack", THEVENIN), ("paper's pack", PAPER)):
+    for title, mission, goal_s in (("Thévenin pack", THEVENIN, 0.025), ("paper's pack", PAPER, 0.01)):
         plain = [bench.program("simulate"), bench.source(mission), "-o", bench.path("soc.csv")]
         sampled = plain + ["--samples", "1000"]
         commands = {"plain": (plain, False), "sampled": (sampled, False)}
         runs = bench.least(commands, 4 * bench.sizes.rounds)  # short ones differ more
         ours_s, without_s = runs["sampled"].cpu_s, runs["plain"].cpu_s
         added_s = max(0.0, ours_s - without_s)
-        rows.append(Row("simulate, 1000 samples add", title, added_s, "s", at_most(0.01, "s"), "all else", without_s))
+        rows.append(Row("simulate, 1000 samples add", title, added_s, "s", at_most(goal_s, "s"), "all else", without_s))
     return rows
 
 
