@@ -159,6 +159,47 @@ test("an area is flown, and has a verdict with its command", { skip, ...patience
   assert.match(await page.textContent(".chart-key"), /charge left/);
 });
 
+const placeOf = (item, latitude, longitude) => ({
+  type: "SimpleItem", frame: 3, command: 16, params: [0, 0, 0, null, latitude, longitude, 60], doJumpId: item,
+});
+
+test("a plan that does not fit has what would help, and one that fits is saved for the autopilot", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  const corners = [[1.48, 43.56], [1.50, 43.56], [1.50, 43.58], [1.48, 43.58], [1.48, 43.56]];
+  const area = JSON.stringify({ type: "Polygon", coordinates: [corners] });
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [named("large.geojson", Buffer.from(area))], "Choose a plan");
+  await page.waitForSelector(".verdict-band.bad", patience);
+  await page.click(".help:has-text('apart'):has-text('enough')", patience);
+  await page.waitForSelector(".verdict-band.good", patience);
+  assert.match(await page.textContent(".command code"), /--spacing \d+/);
+  const [download] = await Promise.all([page.waitForEvent("download", patience), page.click(".buttons button:text-is(' File')")]);
+  assert.equal(download.suggestedFilename(), "large-pack-1.plan");
+  const plan = JSON.parse(await readFile(await download.path(), "utf8"));
+  assert.equal(plan.fileType, "Plan");
+  assert.ok(plan.mission.items.length > 10);
+});
+
+test("a plan of which a movement is not flown fits perhaps", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  const endless = { type: "SimpleItem", frame: 2, command: 177, params: [1, -1, 0, 0, 0, 0, 0], doJumpId: 3 };
+  const plan = JSON.stringify({
+    fileType: "Plan", version: 1, groundStation: "QGroundControl",
+    mission: {
+      version: 2, plannedHomePosition: [43.56, 1.48, 100],
+      items: [placeOf(1, 43.57, 1.48), placeOf(2, 43.57, 1.49), endless],
+    },
+  });
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [named("endless.plan", Buffer.from(plan))], "Choose a plan");
+  await page.waitForSelector(".verdict-band.doubt", patience);
+  assert.match(await page.textContent(".verdict-band"), /Perhaps.*item 3: the jump to item 1 is not flown/);
+});
+
 test("the second visit has the logs, and Forget all has none", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);

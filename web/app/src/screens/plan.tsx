@@ -37,6 +37,7 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
   const lands =
     `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
   const words = kept != null ? chance(kept) : "";
+  const doubt = simulation.uncertain ? `${lands.slice(0, -1)}, but ${simulation.uncertain.join("; ")}.` : lands;
   if (!simulation.keeps_reserve) {
     const where = below >= 0 && time_s[below] != null
       ? `Below the reserve of ${number(reserve, 0)} % after ${duration(time_s[below])}`
@@ -51,13 +52,13 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
   if (kept != null && kept < 0.95) return {
     grade: "doubt",
     title: "May miss the reserve",
-    detail: lands,
+    detail: doubt,
     chance: words,
   };
   if (simulation.uncertain) return {
     grade: "doubt",
     title: "Perhaps",
-    detail: `${lands.slice(0, -1)}, but ${simulation.uncertain.join("; ")}.`,
+    detail: doubt,
     chance: words,
   };
   return { grade: "good", title: `Fits ${packs}`, detail: lands, chance: words };
@@ -590,7 +591,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           />
         )}
       </div>
-      <Command line={planCommand(aircraft.folder, options ?? no_plan, answered?.question)} />
+      <Command line={planCommand(aircraft.folder, shown?.options ?? options ?? no_plan, answered?.question)} />
     </>
   );
 }

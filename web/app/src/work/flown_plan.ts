@@ -18,6 +18,7 @@ export interface PlanOptions {
 }
 
 export interface FlownPlan {
+  /// As asked, with the airspeed where the model asks for one.
   options: PlanOptions;
   mission: string;
   curve: Curve;
@@ -154,20 +155,18 @@ export async function flyPlan(
   project: Project,
   aircraft: Aircraft,
   answered: Answered,
-  options: PlanOptions,
+  asked: PlanOptions,
 ): Promise<FlownPlan | string> {
   return project.withAnswer(aircraft.id, answered, async (engine) => {
     const { question } = answered;
+    let options = asked;
     let made = await missionOf(engine, aircraft.folder, options, question);
     const flown = answered.answer.airspeed_m_per_s.value;
     // A model that does not know what airspeed costs is flown at the speed of its flights, as the program asks for.
-    if (typeof made === "string" && /--airspeed/.test(made) && options.airspeed == null && flown != null)
-      made = await missionOf(
-        engine,
-        aircraft.folder,
-        { ...options, airspeed: Math.round(10 * flown) / 10 },
-        question,
-      );
+    if (typeof made === "string" && /--airspeed/.test(made) && asked.airspeed == null && flown != null) {
+      options = { ...asked, airspeed: Math.round(10 * flown) / 10 };
+      made = await missionOf(engine, aircraft.folder, options, question);
+    }
     if (typeof made === "string") return made;
     const curve = await project.curveOrError(made.file, drawn_flights);
     if (typeof curve === "string") return curve;
