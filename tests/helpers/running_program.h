@@ -44,7 +44,7 @@ int processes_with(const std::string& marker);
 /// A marker that no other process has: a long sleep of its own length.
 std::string new_marker();
 
-/// Looks every 10 ms; false if it does not hold within a minute, which no sound run takes.
+/// Looks every 10 ms; false if it does not hold within five minutes: a sanitized run on a busy machine takes one.
 bool wait_until(const std::function<bool()>& condition);
 
 }  // namespace flightwatt::test
