@@ -120,17 +120,10 @@ export async function planFiles(
     const planned = await engine.run(["plan", mission, "--packs", "--format", format, "-o", folder, "--json"]);
     if (planned.code !== 0) return errorsOf(planned);
     const { flights } = JSON.parse(planned.out) as Simulation;
-    const written = (await engine.list()).map(({ path }) => path.replace(/^\//, ""))
-      .filter((path) => path.startsWith(`${folder}/`) && !/\.(toml|json)$/.test(path));
-    const names = new Set(flights?.map(({ pack }) => `pack-${pack}`));
-    const files: PlanFile[] = [];
-    for (const path of written) {
-      const name = path.slice(folder.length + 1);
-      // An earlier run may have left those of more packs, and of another format.
-      if (names.has(name.replace(/\.\w+$/, "")) && name.endsWith(plan_endings[format] ?? ""))
-        files.push({ name, text: await project.text(path) });
-    }
-    return files.length > 0 ? files : "No number of packs flies it with the reserve: there are no files.";
+    return Promise.all((flights ?? []).map(async ({ pack }) => {
+      const name = `pack-${pack}${plan_endings[format] ?? ""}`;
+      return { name, text: await project.text(`${folder}/${name}`) };
+    }));
   });
 }
 
