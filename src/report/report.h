@@ -31,6 +31,7 @@ struct ReportLog {
 inline constexpr std::size_t max_battery_flights = 12;
 
 /// The input of a report.
+// NOLINTNEXTLINE(bugprone-exception-escape): the move of Json does not throw
 struct ReportInput {
     std::filesystem::path out = {};  ///< the folder of flightwatt batch, or empty
     std::vector<mission::MissionVariant> missions = {};

@@ -188,7 +188,7 @@ TEST(ShippedMaps, ReadEdgeTxWithCrossfire) {
     };
     auto text = test::flight_table("Date;Time;1RSS(dB);RxBt(V);Curr(A);Capa(mAh);Alt(m);GSpd(kmh);GPS", row);
     // As a spreadsheet of Germany saves it: decimal commas, but not in the texts of time and position.
-    for (std::size_t at = 0; (at = text.find(".", at)) != std::string::npos; ++at)
+    for (std::size_t at = 0; (at = text.find('.', at)) != std::string::npos; ++at)
         if (text[at + 2] == ';') text[at] = ',';
     const auto series = recognised("crsf.csv", text);
     EXPECT_NEAR(select_track(series, "ground_speed_m_per_s").value.front(), 35.9 / 3.6, 1e-9);

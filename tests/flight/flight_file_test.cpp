@@ -38,7 +38,7 @@ class Recordings : public testing::Test {
     }
     /// A log with the definitions of the first sample.
     std::filesystem::path put_with_log(const std::string& name, const std::string& bytes) const {
-        const auto path = put(name, bytes);
+        auto path = put(name, bytes);
         std::filesystem::copy_file(test::sample(1, ".log"), std::filesystem::path(path).replace_extension(".log"));
         return path;
     }

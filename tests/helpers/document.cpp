@@ -125,7 +125,7 @@ class Reader {
     void block_row(const std::string& line) {
         constexpr std::size_t max_indent = 12;
         const auto indent = line.find_first_not_of(' ');
-        if (indent == std::string::npos || indent > max_indent) return;
+        if (indent > max_indent) return;  // also that of an empty line
         auto fields = split(line.substr(indent), std::regex("  +"));
         if (fields.size() == 3) fields.insert(fields.begin() + 2, "written");
         fields.resize(4);

@@ -207,7 +207,7 @@ TEST(Dataflash, AMessageDefinedAgainKeepsItsUnits) {
 TEST(Dataflash, Sdlog2HasItsTimesInAMessageBeforeTheOthers) {
     auto log =
         test::dataflash_format(129, "TIME", "Q", "StartTime", 8) + test::dataflash_format(20, "BATT", "ff", "V,C", 8);
-    for (unsigned i = 0; i < 4; ++i)
+    for (std::uint64_t i = 0; i < 4; ++i)
         log += test::dataflash_message(129, test::little_endian(std::uint64_t{3'000'000} + 100'000 * i)) +
                test::dataflash_message(20, test::little_endian(16.0F) + test::little_endian(static_cast<float>(i)));
     EXPECT_EQ(detect_autopilot_format(log), AutopilotFormat::sdlog2);

@@ -20,7 +20,7 @@ const std::vector<MessageRequest> wanted{{"battery_status", {"voltage_v", "q[1]"
 
 /// A folder with the tables of two logs.
 std::filesystem::path tables() {
-    const auto folder = test::scratch_dir();
+    auto folder = test::scratch_dir();
     test::write_text(folder / "log_2_battery_status_0.csv",
                      "timestamp,q[0],q[1],voltage_v\n0,0,0,0\n1000000,1,2,12.5\n1500000,1,3,nan\n");
     test::write_text(folder / "log_2_battery_status_1.csv", "timestamp;voltage_v\n1200000;24,5\n1700000;24,0\n");
