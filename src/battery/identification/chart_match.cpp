@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <boost/math/tools/toms748_solve.hpp>
 
 namespace flightwatt::battery {
 namespace {
@@ -235,11 +237,11 @@ double estimate_depletion_ah(std::span<const CapacityHypothesis> posterior) {
 
 Interval depletion_interval_ah(std::span<const CapacityHypothesis> posterior, double offset_ah,
                                double standard_error_ah) {
-    constexpr int halvings = 40;
+    constexpr double tolerance_ah = 1e-9;
     const double error_ah = std::max(1e-6, standard_error_ah);
     const auto quantile = [&](double probability, bool full_is_full) {
         const auto below = [&](double missing_ah) {
-            double sum = 0.0;
+            double sum = -probability;
             for (const auto& scale : posterior) {
                 const double begins_ah = offset_ah + (scale.is_full && full_is_full ? 0.0 : scale.missing_ah);
                 sum += 0.5 * scale.probability * std::erfc((begins_ah - missing_ah) / (error_ah * std::numbers::sqrt2));
@@ -249,11 +251,10 @@ Interval depletion_interval_ah(std::span<const CapacityHypothesis> posterior, do
         double low_ah = -1.0 - std::abs(offset_ah) - 10.0 * error_ah;
         double high_ah = 1.0 + std::abs(offset_ah) + 10.0 * error_ah;
         for (const auto& scale : posterior) high_ah = std::max(high_ah, scale.missing_ah + offset_ah + 10.0 * error_ah);
-        for (int i = 0; i < halvings; ++i) {
-            const double middle_ah = std::midpoint(low_ah, high_ah);
-            (below(middle_ah) < probability ? low_ah : high_ah) = middle_ah;
-        }
-        return std::max(0.0, std::midpoint(low_ah, high_ah));
+        std::uintmax_t most_iterations = 100;
+        const auto root = boost::math::tools::toms748_solve(
+            below, low_ah, high_ah, [](double low, double high) { return high - low < tolerance_ah; }, most_iterations);
+        return std::max(0.0, std::midpoint(root.first, root.second));
     };
     constexpr double tail = (1.0 - confidence_level) / 2.0;
     return {quantile(tail, true), quantile(1.0 - tail, false)};
