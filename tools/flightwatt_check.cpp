@@ -183,6 +183,7 @@ int check_plans(const cli::StageCall& call, const CheckArguments& arguments) {
     read_aircraft(call, arguments, question.aircraft);
     if (arguments.wind) question.aircraft.wind = cli::parse_wind(*arguments.wind, true);
     if (arguments.home) question.plan.home = parse_home(*arguments.home);
+    question.plan.terrain_name = question.plan.terrain.value_or("");
     CheckOutput output;
     for (const auto& input : call.inputs) {
         question.plan.file = question.plan.name = input;

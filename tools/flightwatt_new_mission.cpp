@@ -88,6 +88,7 @@ mission::NewMission described_mission(const NewMissionArguments& arguments, cons
         auto flown = arguments.flown;
         flown.file = *arguments.plan;
         flown.name = named_from(folder, flown.file);
+        if (flown.terrain) flown.terrain_name = named_from(folder, *flown.terrain);
         fly_plan(flown, mechanical, fresh);
     }
     if (arguments.wind) fresh.wind = cli::parse_wind(*arguments.wind, true);

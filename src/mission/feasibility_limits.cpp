@@ -319,8 +319,11 @@ Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& p
     const auto mission = mission_of({.allow_unplanned = true});
     const auto& setup = setup_of(mission);
     const auto unit = measure.value_or(reach_unit_of(setup));
+    const double length_m = setup.cruise_path ? length_of_legs_m(drawn_path(*setup.cruise_path->plan)) : 0.0;
+    const bool flies_back = setup.cruise_path && drawn_path(*setup.cruise_path->plan).elements.back().is_return_leg;
     const MissionVariation variation = [&](double value) {
         MissionReadOptions reading{.allow_unplanned = true};
+        if (unit == ReachUnit::return_m && flies_back && value >= length_m) return mission;  // straight back
         (unit == ReachUnit::cruise_s   ? reading.cruise_s
          : unit == ReachUnit::circles  ? reading.circles
          : unit == ReachUnit::return_m ? reading.return_after_m
@@ -330,7 +333,7 @@ Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& p
     if (unit == ReachUnit::cruise_s) return {unit, longest_cruise(variation, probability)};
     if (unit == ReachUnit::circles) return {unit, max_circles(variation, probability)};
     if (unit == ReachUnit::path_times) return {unit, most_path_times(variation, probability)};
-    return {unit, farthest_return(variation, length_of_legs_m(drawn_path(*setup.cruise_path->plan)), probability)};
+    return {unit, farthest_return(variation, length_m, probability)};
 }
 
 InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const MissionPlan& plan,

@@ -124,7 +124,7 @@ void note_other_cells(MissionSetup& mission) {
     const double flown_v = *mission.mechanical->pack_voltage_v;
     const double full_v = open_circuit_voltage_v(mission.battery, units::percent_per_whole);
     if (full_v >= least_part * flown_v && full_v <= most_times * flown_v) return;
-    mission.notes.push_back(
+    mission.uncertain.push_back(
         fmt::format("the pack has {:.1f} V when full, and the model's flights were flown with up to "
                     "{:.1f} V: has it another number of cells?",
                     full_v, flown_v));

@@ -51,13 +51,20 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
     return best_deg;
 }
 
+/// The distance between the lines over an area, with the reason.
+std::pair<double, std::string> choose_spacing(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
+    constexpr double usual_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
+    constexpr double whole_percent = 100.0;
+    if (plan.spacing_m) return {*plan.spacing_m, "as asked"};
+    if (plan.overlap_percent)
+        return {*plan.swath_m * (1.0 - *plan.overlap_percent / whole_percent),
+                fmt::format("images {:g} m wide overlap by {:g} %", *plan.swath_m, *plan.overlap_percent)};
+    if (is_rotorcraft) return {usual_m, "assumed: your camera and height decide it (--swath, --overlap)"};
+    return {2.0 * turn_radius_m(airspeed_m_per_s), fmt::format("for turns with a bank of {} degrees", bank_deg)};
+}
+
 NewPath path_of_area(std::string_view text, const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
-    constexpr double usual_spacing_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
-    const double spacing_m =
-        plan.spacing_m.value_or(is_rotorcraft ? usual_spacing_m : 2.0 * turn_radius_m(airspeed_m_per_s));
-    const auto spacing_reason = plan.spacing_m  ? std::string("as asked")
-                                : is_rotorcraft ? std::string("assumed: your camera and height decide it")
-                                                : fmt::format("for turns with a bank of {} degrees", bank_deg);
+    const auto [spacing_m, spacing_reason] = choose_spacing(plan, airspeed_m_per_s, is_rotorcraft);
     const double heading_deg =
         plan.heading_deg ? *plan.heading_deg : best_heading_deg(text, plan.file.string(), spacing_m);
     return {{fmt::format("area = {}", toml_string(plan.name)), fmt::format("spacing_m = {}", spacing_m),
@@ -113,12 +120,15 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
         if (plan.home) path.keys.push_back(start);
         return path;
     }
-    if (plan.spacing_m || plan.heading_deg)
+    if (plan.spacing_m || plan.overlap_percent || plan.heading_deg)
         throw UsageError(
             fmt::format("{} is no area (GeoJSON, KML): its lines have no spacing and heading to state", file.string()));
+    if (of_blocks && plan.terrain)
+        throw UsageError(fmt::format("{} has no altitudes above the terrain: --terrain has no meaning", file.string()));
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
-        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft};
+        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft, false,
+                                               plan.terrain.value_or("")};
         return of_blocks ? path::parse_plan_blocks(text, file.string(), blocks, settings)
                          : path::read_waypoints(file, settings);
     };
@@ -126,6 +136,7 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     if (!start.empty()) path.keys.push_back(start);
     if (of_blocks && !plan.home && !start.empty()) path.chosen.push_back(start + ", the plan's HOME");
     if (of_blocks) path.keys.push_back("blocks = " + toml_strings(blocks));
+    if (plan.terrain) path.keys.push_back("terrain = " + toml_string(plan.terrain_name));
     path::PlanEntries entries;
     try {
         entries = read(std::nullopt);

@@ -27,7 +27,11 @@ struct PlanToFly {
     std::vector<std::string> blocks = {};             ///< in the order of flight
     std::optional<double> airspeed_m_per_s = {};      ///< default: the plan's, or that of the model's flights
     std::optional<double> spacing_m = {};             ///< of the lines over an area; default: of turns or of a camera
+    std::optional<double> swath_m = {};               ///< width of ground that the camera sees
+    std::optional<double> overlap_percent = {};       ///< of images of neighbouring lines; decides the spacing
     std::optional<double> heading_deg = {};           ///< of these lines; default: with the fewest turns
+    std::optional<std::string> terrain = {};          ///< folder of tiles, for altitudes above the terrain
+    std::string terrain_name = {};                    ///< of the folder, as the mission names it
     std::optional<path::GeodeticPosition> home = {};  ///< where it begins and ends; default: the first place
 };
 

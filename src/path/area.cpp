@@ -70,6 +70,8 @@ struct LinedStrip {
     std::vector<SurveyLine> lines = {};
 };
 
+constexpr double noted_part = 0.1;  // of the width
+
 double area_between_m2(const LinedPolygon& polygon, double left_m, double right_m) {
     constexpr int slices = 400;
     double area_m2 = 0.0;
@@ -97,6 +99,15 @@ std::vector<LinedStrip> lined_strips(const LinedPolygon& polygon, const SurveyLa
     return strips;
 }
 
+/// The width of strips that is farther than half a spacing from each line.
+double uncovered_width_m(const std::vector<LinedStrip>& strips) {
+    double width_m = 0.0;
+    for (const auto& strip : strips)
+        width_m += std::max(
+            0.0, strip.right_m - strip.left_m - static_cast<double>(strip.lines.size()) * strip.strip->spacing_m);
+    return width_m;
+}
+
 /// Appends the lines of a layout over one polygon, in its strips.
 void write_strips(const PatternWriter& writer, const Polygon& corners, const SurveyLayout& layout, SurveyPlan& survey) {
     const LinedPolygon polygon(corners, layout.heading_deg);
@@ -107,7 +118,8 @@ void write_strips(const PatternWriter& writer, const Polygon& corners, const Sur
         survey_lines(corners, first.spacing_m, layout.heading_deg, writer.like.where), corners.front());
     std::vector<SurveyLine> lines;
     std::vector<const SurveyStrip*> strip_of;
-    for (const auto& strip : lined_strips(polygon, layout, is_reversed)) {
+    const auto strips = lined_strips(polygon, layout, is_reversed);
+    for (const auto& strip : strips) {
         auto& cover = survey.strips.emplace_back();
         cover.area_m2 = area_between_m2(polygon, strip.left_m, strip.right_m);
         for (std::size_t i = 0; i < strip.lines.size(); ++i) {
@@ -122,6 +134,11 @@ void write_strips(const PatternWriter& writer, const Polygon& corners, const Sur
             survey.line_to.push_back(i + 1 == strip.lines.size() ? strip.strip->to : to);
         }
     }
+    if (const double uncovered_m = uncovered_width_m(strips); uncovered_m > noted_part * width_m)
+        survey.not_flown.push_back(
+            fmt::format("{:.0f} of the area's {:.0f} m of width are farther than half a spacing from a line: another "
+                        "spacing fits better",
+                        uncovered_m, width_m));
     if (lines.size() > static_cast<std::size_t>(max_survey_lines) || lines.empty())
         throw InputError(writer.like.where,
                          fmt::format("{} lines fit into the area, expected 1 to 5000", lines.size()));

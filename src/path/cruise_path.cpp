@@ -150,6 +150,24 @@ bool has_steep_turn(const PathTrajectory& flown) {
                                [](const auto& piece) { return piece.motion.load_factor > steep_load_factor; });
 }
 
+double part_far_beyond(const PlannedPath& plan, const PathTrajectory& flown) {
+    constexpr double part_more = 0.2;      // of the airspeed: the drag is 44 % more
+    constexpr double climb_m_per_s = 0.5;  // of a climb between level ends, as gusts make it
+    constexpr double times_more_climb = 1.5;
+    const auto& [slowest, fastest] = plan.power.airspeed_m_per_s;
+    const auto& [sink, climb] = plan.power.climb_m_per_s;
+    double beyond_s = 0.0;
+    for (const auto& piece : flown.pieces) {
+        const auto& motion = piece.motion;
+        const bool is_near = motion.airspeed_m_per_s >= slowest * (1.0 - part_more) &&
+                             motion.airspeed_m_per_s <= fastest * (1.0 + part_more) &&
+                             motion.climb_m_per_s >= times_more_climb * std::min(sink, -climb_m_per_s) &&
+                             motion.climb_m_per_s <= times_more_climb * std::max(climb, climb_m_per_s);
+        if (!is_near) beyond_s += piece.time_s;
+    }
+    return flown.duration_s > 0.0 ? beyond_s / flown.duration_s : 0.0;
+}
+
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double felt_load_factor = 1.1;  // a tenth more lift is a fifth more drag of lift
     std::vector<std::string> warnings;

@@ -90,6 +90,9 @@ std::optional<PathSpeed> best_path_speed(const PlannedPath& plan);
 /// Returns whether a turn takes a bank above 60 degrees, which the aircraft may not be able to fly.
 bool has_steep_turn(const PathTrajectory& flown);
 
+/// Returns the part of the time that is flown far beyond the airspeeds and climbs of the model's flights, 0 to 1.
+double part_far_beyond(const PlannedPath& plan, const PathTrajectory& flown);
+
 /// Returns warnings about the first element outside of the model's flown range, and about a steep turn.
 std::vector<std::string> path_warnings(const PlannedPath& plan, const PathTrajectory& flown);
 

@@ -3,6 +3,7 @@
 #include "path/path_entries.h"
 #include "path/plan_fence.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +15,9 @@ struct AutopilotSettings {
     std::optional<double> radius_m;  ///< radius of circles for which the plan states none
     /// Airspeed for circles that end after a time; 0: the plan's own, without which they are flown once.
     double airspeed_m_per_s = 0.0;
-    bool is_rotorcraft = false;  ///< of plans that name no kind of vehicle
-    bool one_airspeed = false;   ///< the plan's changes of the airspeed are not flown
+    bool is_rotorcraft = false;          ///< of plans that name no kind of vehicle
+    bool one_airspeed = false;           ///< the plan's changes of the airspeed are not flown
+    std::filesystem::path terrain = {};  ///< folder of tiles, for altitudes above the terrain; empty: none
 };
 
 /// The airspeed that a plan states for all legs without one of their own.
@@ -35,6 +37,7 @@ struct PlanEntries {
     bool is_above_home = false;               ///< altitudes are above home
     bool ends_with_landing = false;
     std::optional<PlannedSpeed> speed = {};
+    std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names; else of a wing
     PlanFence fence = {};
 };
 

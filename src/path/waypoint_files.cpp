@@ -246,8 +246,11 @@ PlanEntries read_any_waypoints(const std::filesystem::path& path, const Autopilo
     auto ending = path.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto text = read_file(path);
+    const auto format = plan_format(text);
+    if (!settings.terrain.empty() && format != PlanFormat::qgroundcontrol && format != PlanFormat::ardupilot)
+        throw InputError({path.string()}, "has no altitudes above the terrain", "leave terrain (--terrain) out");
     if (ending == ".geojson" || ending == ".json") return {parse_geojson(text, path.string())};
-    switch (plan_format(text)) {
+    switch (format) {
         case PlanFormat::qgroundcontrol:
             return parse_qgc_plan(text, path.string(), settings);
         case PlanFormat::ardupilot:

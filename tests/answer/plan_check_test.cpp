@@ -150,13 +150,33 @@ TEST(PlanCheck, IsPerhapsAtMostWhereAMovementIsNotFlown) {
     EXPECT_EQ(endless.fit, PlanFit::perhaps);
     EXPECT_GE(endless.probability.value(), 0.95);
     EXPECT_THAT(endless.flown.uncertain,
-                ElementsAre("a part of the plan is not flown: item 3: the jump to item 1 is not flown: it has no end"));
+                ElementsAre("the plan is not flown as it is: item 3: the jump to item 1 is not flown: it has no end"));
     EXPECT_THAT(endless.reason, HasSubstr("the jump to item 1"));
     EXPECT_TRUE(endless.remedies.empty()) << "what is flown fits";
     const auto once = check_with(R"("command": 177, "params": [1, 1, 0, 0, 0, 0, 0])");
     EXPECT_EQ(once.fit, PlanFit::yes);
     EXPECT_GT(once.length_m, 1.5 * endless.length_m);
     EXPECT_EQ(check_with(R"("command": 177, "params": [1, 500, 0, 0, 0, 0, 0])").fit, PlanFit::no);
+}
+
+TEST(PlanCheck, IsPerhapsAtMostFarBeyondWhatTheFlightsFlew) {
+    auto question = lines_of(1.0);
+    EXPECT_EQ(check_plan(question).fit, PlanFit::yes);
+    question.plan.airspeed_m_per_s = 23.0;
+    const auto fast = check_plan(question);
+    EXPECT_EQ(fast.fit, PlanFit::perhaps);
+    EXPECT_THAT(fast.reason, HasSubstr("% of the cruise is flown far beyond the airspeeds and climbs"));
+    const auto climb = test::scratch_dir() / "climb.csv";
+    test::write_text(climb, "east_m,north_m,altitude_m\n0,0,50\n0,400,1000\n0,2000,1000\n");
+    EXPECT_EQ(check_plan(question_of(climb)).fit, PlanFit::perhaps);
+}
+
+TEST(PlanCheck, IsPerhapsAtMostWithThePackOfAnotherAircraft) {
+    auto question = lines_of(1.0);
+    question.aircraft.model.pack_voltage_v = 25.2;
+    const auto check = check_plan(question);
+    EXPECT_EQ(check.fit, PlanFit::perhaps);
+    EXPECT_THAT(check.reason, HasSubstr("has it another number of cells?"));
 }
 
 TEST(PlanCheck, FliesOneAirspeedInsteadOfThePlansChanges) {

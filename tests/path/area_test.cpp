@@ -33,6 +33,15 @@ double length_m(const PlanEntries& survey) {
     return length_m;
 }
 
+TEST(Areas, NameTheWidthThatNoLineCovers) {
+    EXPECT_TRUE(parse_area(geojson(ring), "a.geojson", {0.0, {{50.0}}}).not_flown.empty());
+    const auto wide = parse_area(geojson(ring), "a.geojson", {0.0, {{270.0}}});
+    ASSERT_EQ(wide.not_flown.size(), 1U);
+    EXPECT_EQ(
+        wide.not_flown.front(),
+        "130 of the area's 400 m of width are farther than half a spacing from a line: another spacing fits better");
+}
+
 TEST(Areas, AreCoveredByLines) {
     const auto area = parse_area(geojson(ring), "a.geojson", {0.0, {{50.0}}});
     EXPECT_NEAR(length_m(area), 8.0 * 400.0 + 7.0 * 78.54, 15.0);

@@ -81,8 +81,16 @@ void add_plan_options(Options& options, mission::PlanToFly& plan, const std::vec
     options.add("spacing", plan.spacing_m,
                 {.value = "M", .min = path::min_radius_m, .max = path::max_radius_m, .needs = needs},
                 "between the lines over an area; default: of turns with a bank of 30 degrees, of rotorcraft 25 m");
+    options.add("swath", plan.swath_m,
+                {.value = "M", .min = path::min_radius_m, .max = path::max_radius_m, .needs = {"overlap"}},
+                "width of ground that the camera sees, which with --overlap decides the spacing");
+    options.add("overlap", plan.overlap_percent,
+                {.value = "PERCENT", .min = 0.0, .max = 95.0, .needs = {"swath"}, .excludes = {"spacing"}},
+                "part of an image's width that the next line sees again");
     options.add("heading", plan.heading_deg, {.value = "DEG", .min = 0.0, .max = 360.0, .needs = needs},
                 "course of these lines; default: with the fewest turns");
+    options.add("terrain", plan.terrain, {.value = "FOLDER", .file = FileRole::input, .needs = needs},
+                "heights of the ground, tiles of SRTM (N47E008.hgt), for altitudes of the plan above the terrain");
 }
 
 path::Wind parse_wind(const std::string& text, bool needs_direction) {

@@ -60,8 +60,8 @@ std::optional<mission::SamplingOptions> sampling_options(const SamplingArguments
 std::vector<mission::Disturbance> read_disturbances(const SamplingArguments& arguments,
                                                     const mission::MissionSetup& mission);
 
-/// How a plan is flown: --block, --airspeed, and --spacing and --heading of lines over an area. `needs` are options of
-/// which one has to be given with each.
+/// How a plan is flown: --block, --airspeed, --terrain, and --spacing, --swath, --overlap and --heading of lines over an
+/// area. `needs` are options of which one has to be given with each.
 void add_plan_options(Options& options, mission::PlanToFly& plan, const std::vector<std::string>& needs);
 
 /// The wind of --wind: "6@250" is 6 m/s from 250 degrees. Without a direction it is 0, unless `needs_direction`. Throws

@@ -1,6 +1,7 @@
 #include "mission/file/cruise_toml.h"
 
 #include "base/input_file.h"
+#include "base/units.h"
 #include "mission/file/named_file.h"
 #include "mission/file/planning_toml.h"
 #include "mission/file/takeoff_height.h"
@@ -269,15 +270,16 @@ void require_one_file(const TomlTable& path) {
             throw InputError(path.where(file), fmt::format("{} and {} are two paths", named, file), "give one");
         named = file;
     }
-    constexpr std::array<std::pair<const char*, const char*>, 9> keys{{{"blocks", "flight_plan"},
-                                                                       {"waypoint_order", "flight_plan"},
-                                                                       {"one_airspeed", "waypoints"},
-                                                                       {"radius_m", "flight_plan or waypoints"},
-                                                                       {"spacing_m", "area"},
-                                                                       {"heading_deg", "area"},
-                                                                       {"strip", "area"},
-                                                                       {"swath_m", "area"},
-                                                                       {"utility", "area"}}};
+    constexpr std::array<std::pair<const char*, const char*>, 10> keys{{{"blocks", "flight_plan"},
+                                                                        {"waypoint_order", "flight_plan"},
+                                                                        {"one_airspeed", "waypoints"},
+                                                                        {"terrain", "waypoints"},
+                                                                        {"radius_m", "flight_plan or waypoints"},
+                                                                        {"spacing_m", "area"},
+                                                                        {"heading_deg", "area"},
+                                                                        {"strip", "area"},
+                                                                        {"swath_m", "area"},
+                                                                        {"utility", "area"}}};
     for (const auto& [key, file] : keys)
         if (path.has(key) && (named.empty() || std::string_view(file).find(named) == std::string_view::npos))
             throw InputError(path.where(key), fmt::format("{} belongs to {}", key, file), "add it, or leave this out");
@@ -288,7 +290,8 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
                                MissionSetup& mission) {
     const path::AutopilotSettings settings{
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"),
-        defaults.airspeed_m_per_s, is_rotorcraft, path.optional_boolean("one_airspeed").value_or(false)};
+        defaults.airspeed_m_per_s, is_rotorcraft, path.optional_boolean("one_airspeed").value_or(false),
+        path.has("terrain") ? named_file(path, "terrain") : ""};
     if (settings.one_airspeed && !path.has("airspeed_m_per_s"))
         throw InputError(path.where("one_airspeed"), "one_airspeed needs airspeed_m_per_s", "add it");
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
@@ -335,7 +338,10 @@ path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaul
         read_path_airspeed(path, mission, defaults);  // which throws
     }
     for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
-    for (const auto& text : plan.missing) mission.uncertain.push_back("a part of the plan is not flown: " + text);
+    for (const auto& text : plan.missing) mission.uncertain.push_back("the plan is not flown as it is: " + text);
+    if (mission.mechanical && plan.is_of_multirotor.value_or(is_rotorcraft) != is_rotorcraft)
+        mission.uncertain.emplace_back(is_rotorcraft ? "the plan is for a wing, and the model of a rotorcraft"
+                                                     : "the plan is for a multirotor, and the model of a wing");
     auto& entries = plan.entries;
     defaults.starts_at_first_place = plan.starts_at_first_place;
     if (plan.is_above_home) defaults.is_above_ground = true;
@@ -424,12 +430,13 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
                               "return_to_start",  "waypoints",    "flight_plan",   "waypoint_order",  "blocks",
                               "radius_m",         "area",         "spacing_m",     "heading_deg",     "leg",
                               "max_bank_deg",     "one_airspeed", "turn_radius_m", "strip",           "swath_m",
-                              "utility"});
+                              "utility",          "terrain"});
     require_one_file(table);
     if (table.has("area")) mission.survey = SurveyCoverage{read_layout(table, reading)};
     auto defaults = read_defaults(table, mission);
     auto planned = read_entries(table, defaults, mission);
     auto& entries = planned.entries;
+    note_unknown_height(defaults, mission);
     if (mission.mechanical) defaults.rates_on_spot = flown_rates(*mission.mechanical);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
@@ -549,6 +556,11 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     if (mission.survey && !reading.path_times) set_line_times(plan.path, flown, *mission.survey);
     if (has_steep_turn(flown))
         mission.uncertain.emplace_back("a turn takes a bank that the aircraft may not be able to fly");
+    constexpr double uncertain_part = 0.05;
+    if (const double part = is_physical ? part_far_beyond(plan, flown) : 0.0; part >= uncertain_part)
+        mission.uncertain.push_back(
+            fmt::format("{:.0f} % of the cruise is flown far beyond the airspeeds and climbs of the model's flights",
+                        units::percentage(part, 1.0)));
     if (is_physical)
         for (auto& warning : path_warnings(plan, flown)) mission.notes.push_back(std::move(warning));
     set_cruise_path(mission, std::move(plan));

@@ -11,6 +11,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double assumed_m = 120.0;        // the legal limit: most flights of earlier files climbed to less
+constexpr double height_error_m = 10.0;    // of a home as plans state it
 constexpr double noted_s = 1.0;            // longer or shorter than the model's phase
 constexpr double uncertain_percent = 5.0;  // of the energy
 
@@ -62,6 +63,16 @@ void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rat
     }
 }
 
+void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission) {
+    if (!mission.mechanical || !defaults.altitude_m || defaults.is_above_ground) return;
+    const auto flown = with_heights(mission.mechanical->phases[Phase::takeoff]);
+    if (mission.duration_is_stated[Phase::takeoff] || *defaults.altitude_m <= flown.heights->high_m) return;
+    mission.uncertain.push_back(fmt::format(
+        "whether the {:.0f} m at its start are above the ground is not stated: take-off and landing are those of the "
+        "model's flights, of up to {:.0f} m",
+        *defaults.altitude_m, flown.heights->high_m));
+}
+
 void set_takeoff_and_landing(MissionSetup& mission) {
     const auto& plan = *mission.cruise_path->plan;
     if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return;
@@ -81,6 +92,9 @@ void set_takeoff_and_landing(MissionSetup& mission) {
         }
         const auto flown = with_heights(model);
         const double to_m = height_m[phase];
+        if (to_m < -height_error_m)
+            mission.uncertain.push_back(fmt::format("{}: the path {} {:.0f} m below home", phase_word(phase),
+                                                    phase == Phase::takeoff ? "begins" : "ends", -to_m));
         duration_s = duration_at_height_s(flown, to_m);
         if (std::abs(duration_s - model.duration_s) >= noted_s)
             mission.notes.push_back(duration_note(phase, to_m, duration_s, model));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mission/mission.h"
+#include "path/path_entries.h"
 
 namespace flightwatt::mission {
 
@@ -9,6 +10,10 @@ path::ClimbRates flown_rates(const mechanical::MechanicalModel& model);
 
 /// Notes the first change of height above one place that has its rate from the model.
 void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission);
+
+/// Notes that take-off and landing do not follow from altitudes of which a file does not state what they are above, where
+/// the path begins higher than the model's flights climbed.
+void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission);
 
 /// Sets how long take-off and landing last by the altitudes at the ends of the mission's path, if these are known to be
 /// above the ground and the mission does not state the duration. Notes it, and whether it makes the result uncertain.

@@ -5,6 +5,7 @@
 #include "path/plans/fence.h"
 #include "path/plans/json_text.h"
 #include "path/plans/patterns.h"
+#include "path/terrain.h"
 
 #include <algorithm>
 #include <array>
@@ -35,14 +36,16 @@ struct MissionItems {
     std::vector<MissionItem> items;
     Location where;
     std::optional<PlannedSpeed> speed = {};
-    bool jumps_count_again = true;  ///< a jump that is reached again after its last repetition: not of PX4
+    bool is_of_px4 = false;
+    bool has_rally_points = false;
+    std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
 };
 
 /// Returns whether a command that is not known moves the aircraft: those for navigation, and few others.
 bool is_movement(int command) {
     constexpr int last_for_navigation = 94;
     constexpr int region_of_interest = 80;
-    constexpr std::array others{0, 113, 192, 213, 252, 601, 42702, 42703};  // 0: an item without commands
+    constexpr std::array others{0, 113, 179, 192, 213, 252, 601, 42702, 42703};  // 0: an item without commands
     return std::ranges::count(others, command) > 0 ||
            (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
 }
@@ -62,10 +65,12 @@ std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_d
 class ItemReader {
   public:
     ItemReader(const MissionItems& mission, const AutopilotSettings& settings)
-        : settings_(settings),
+        : mission_(mission),
+          settings_(settings),
           home_(place_at(mission.home[0], mission.home[1], "home", mission.where)),
           speed_(mission.speed) {
         if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
+        if (home_ && !settings.terrain.empty()) terrain_.emplace(settings.terrain);
     }
 
     /// Reads an item, flown for the `round`th time.
@@ -132,7 +137,10 @@ class ItemReader {
             entries_.front().where = where;
             entries_.front().geographic = home_;
         }
-        PlanEntries plan{std::move(entries_), {}, {}, true, starts_at_home, true, lands, speed_};
+        auto path = terrain_ ? along_terrain(entries_, *terrain_, *home_) : TerrainPath{std::move(entries_), {}};
+        PlanEntries plan{
+            std::move(path.entries),  path.below_ground, path.below_ground, true, starts_at_home, true, lands, speed_,
+            mission_.is_of_multirotor};
         for (const auto& [text, items] : reports_) {
             const auto more = items.names.size() - 1;
             plan.not_flown.push_back(
@@ -165,23 +173,38 @@ class ItemReader {
     PathEntry entry_at_altitude(const MissionItem& item) {
         auto entry = entry_of(item);
         entry.altitude_m = altitude_of(item);
+        entry.is_above_terrain = terrain_ && entry.altitude_m && is_above_terrain(item);
+        if (!entry.is_above_terrain) return entry;
+        const auto last = std::ranges::find_if(entries_.rbegin(), entries_.rend(), has_place);
+        const auto place = entry.geographic ? entry.geographic : last != entries_.rend() ? last->geographic : home_;
+        *entry.altitude_m += terrain_->ground_m(*place) - terrain_->ground_m(*home_);
         return entry;
     }
 
-    /// Above home; frames are MAV_FRAME.
+    static bool has_place(const PathEntry& entry) { return entry.geographic.has_value(); }
+
+    static bool is_above_terrain(const MissionItem& item) { return item.frame == 10 || item.frame == 11; }
+
+    /// Above home, but for one above the terrain; frames are MAV_FRAME.
     std::optional<double> altitude_of(const MissionItem& item) {
         const double altitude_m = item.parameters[6];
         if (std::isnan(altitude_m) || item.frame == 2) return std::nullopt;  // 2: a command without a place
+        if (item.parameters[4] == 0.0 && item.parameters[5] == 0.0 && altitude_m == 0.0)
+            return std::nullopt;  // as it is
         if (item.frame == 0 || item.frame == 5) {
             if (home_altitude_m_) return altitude_m - *home_altitude_m_;
-            report(item, "the altitude above the sea is not flown, as the plan does not state that of home");
+            report_missing(item, "the altitude above the sea is not flown, as the plan does not state that of home");
             return std::nullopt;
         }
-        if (item.frame == 10 || item.frame == 11)
-            report(item, "the altitude above the terrain is flown as one above home");
-        else if (item.frame != 3 && item.frame != 6)
+        if (is_above_terrain(item)) {
+            if (!terrain_)
+                report_missing(item,
+                               "the altitude above the terrain is flown as one above home: terrain (--terrain) names "
+                               "a folder of its heights");
+        } else if (item.frame != 3 && item.frame != 6) {
             throw InputError(item.where, fmt::format("{} has its altitude in frame {}", item.name, item.frame),
                              "expected 0 (above the sea), 3 (above home) or 10 (above the terrain)");
+        }
         return altitude_m;
     }
 
@@ -217,6 +240,8 @@ class ItemReader {
         auto entry = entry_of(item);
         entry.geographic = home_;
         if (!home_) return report(item, "the return is not flown: the plan states no home");
+        if (mission_.has_rally_points)
+            report_missing(item, "the return is flown to home, not to one of the plan's rally points");
         entries_.push_back(entry);
     }
 
@@ -236,15 +261,19 @@ class ItemReader {
         entries_.push_back(with_circles(entry_at_altitude(item), turns, radius_m));
     }
 
-    /// What the autopilots have where nothing was set: NAV_LOITER_RAD of PX4 (ArduPlane's WP_LOITER_RAD is 60 m), and
+    /// What the autopilots have where nothing was set: NAV_LOITER_RAD of PX4, WP_LOITER_RAD of ArduPlane and
     /// CIRCLE_RADIUS of ArduCopter.
     double assumed_radius_m(const MissionItem& item) {
-        constexpr double wing_m = 80.0, rotorcraft_m = 10.0;
+        constexpr double px4_m = 80.0, arduplane_m = 60.0, rotorcraft_m = 10.0;
+        const double wing_m = mission_.is_of_px4 ? px4_m : arduplane_m;
         const double radius_m = settings_.is_rotorcraft ? rotorcraft_m : wing_m;
         if (!settings_.radius_m)
             report(item, fmt::format("the circle has no radius: {:.0f} m are assumed, of {}; radius_m in [path] states "
                                      "another",
-                                     radius_m, settings_.is_rotorcraft ? "ArduCopter" : "PX4"));
+                                     radius_m,
+                                     settings_.is_rotorcraft ? "ArduCopter"
+                                     : mission_.is_of_px4    ? "PX4"
+                                                             : "ArduPlane"));
         return radius_m;
     }
 
@@ -252,6 +281,8 @@ class ItemReader {
         if (settings_.one_airspeed) return;
         const double kind = item.parameters[0];  // SPEED_TYPE: 0 airspeed, 1 ground speed, as multirotors have it
         const double speed = item.parameters[1];
+        constexpr double of_settings = -2.0;
+        if (speed == of_settings) return airspeed_m_per_s_.reset();
         if (!(kind == 0.0 || kind == 1.0) || !(speed > 0.0 && speed <= max_m_per_s))
             return report(item, "the change of speed is not flown: it states no airspeed");
         if (kind == 1.0) report(item, "the ground speed is flown as an airspeed, which it is in calm air");
@@ -264,10 +295,12 @@ class ItemReader {
         bool is_missing = false;
     };
 
+    const MissionItems& mission_;
     const AutopilotSettings& settings_;
     std::optional<GeodeticPosition> home_;
     std::optional<PlannedSpeed> speed_;
     std::optional<double> home_altitude_m_;
+    std::optional<Terrain> terrain_;           ///< where its heights and home are known
     bool takes_off_ = false;                   ///< an item states where
     std::optional<std::size_t> landed_after_;  ///< so many entries
     std::size_t round_ = 1;                    ///< of the item
@@ -318,7 +351,8 @@ class MissionFlight {
             taken_[i] += 1.0;
             return static_cast<std::size_t>(target - mission_.items.begin());
         }
-        if (mission_.jumps_count_again && std::exchange(taken_[i], 0.0) > 0.0 && rounds_[i] > times + 1.0)
+        // PX4 does not count a jump again that is reached after its last repetition.
+        if (!mission_.is_of_px4 && std::exchange(taken_[i], 0.0) > 0.0 && rounds_[i] > times + 1.0)
             reader.report(item,
                           "the jump is repeated in each round of another, as ArduPilot does from 4.7 on; earlier "
                           "versions and PX4 repeat it once");
@@ -354,7 +388,9 @@ class QgcReader {
             copy_numbers(mission, "plannedHomePosition", mission_.home);
             read_speed(mission);
             constexpr int px4 = 12;  // MAV_AUTOPILOT
-            mission_.jumps_count_again = mission.value("firmwareType", Json()) != px4;
+            mission_.is_of_px4 = mission.value("firmwareType", Json()) == px4;
+            const auto rally = plan.value("rallyPoints", Json::object());
+            mission_.has_rally_points = rally.is_object() && !rally.value("points", Json::array()).empty();
             read_items(mission.at("items"), "item", false);
             number_items();
         } catch (const Json::exception& error) {  // "[json.exception.type_error.302] type must be array"
@@ -393,6 +429,8 @@ class QgcReader {
         const auto type = mission.value("vehicleType", Json());
         const bool is_known = type.is_number_integer() && type != 0;
         const bool hovers = is_known ? std::ranges::count(multirotors, type.get<int>()) > 0 : is_rotorcraft_;
+        constexpr int fixed_wing = 1;  // MAV_TYPE
+        if (is_known && (hovers || type == fixed_wing)) mission_.is_of_multirotor = hovers;
         const auto* key = hovers ? "hoverSpeed" : "cruiseSpeed";
         const auto speed = mission.value(key, Json());
         if (!speed.is_number() || speed == 0.0) return;

@@ -22,7 +22,7 @@ TEST(Requirement, IsMissedWhereAPartIsUncertain) {
     const Requirement as_modelled{.text = "reserve", .probability = {}};
     auto summary = landed();
     EXPECT_FALSE(reason_missed(as_modelled, summary));
-    summary.uncertain = {"a part of the plan is not flown: item 3"};
+    summary.uncertain = {"the plan is not flown as it is: item 3"};
     EXPECT_THAT(reason_missed(as_modelled, summary).value(),
                 HasSubstr("survey: whether it keeps the reserve is uncertain: a part"));
     EXPECT_FALSE(reason_missed({}, summary)) << "nothing is required";

@@ -8,6 +8,7 @@
 #include "mission/planned_mission_toml.h"
 #include "mission/simulation.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -305,6 +306,30 @@ std::filesystem::path folder_with_heights() {
     model.phases[Phase::landing].heights = mechanical::PhaseHeights{50.0, 40.0, 60.0, 2.0};
     write_wing(model, folder / "heights.toml");
     return folder;
+}
+
+TEST(PathToml, IsUncertainWhereItsHeightIsUnknownOrBelowHome) {
+    const auto folder = folder_with_heights();
+    const auto uncertain = [&](const std::string& keys) {
+        return read(folder, "heights.toml", "[path]\nairspeed_m_per_s = 13\n" + keys).setup.uncertain;
+    };
+    const std::string leg = "leg = [{ length_m = 2600, course_deg = 0 }]\n";
+    EXPECT_TRUE(uncertain("altitude_m = 60\n" + leg).empty());
+    EXPECT_THAT(
+        uncertain("altitude_m = 500\n" + leg),
+        ElementsAre("whether the 500 m at its start are above the ground is not stated: take-off and landing are "
+                    "those of the model's flights, of up to 60 m"));
+    write_text(folder / "q.plan", plan_at(-380.0, -380.0));
+    EXPECT_THAT(uncertain("waypoints = \"q.plan\"\n"),
+                ElementsAre("take-off: the path begins 380 m below home", "landing: the path ends 380 m below home"));
+}
+
+TEST(PathToml, IsUncertainWithThePlanOfAnotherKindOfVehicle) {
+    const auto folder = path_folder();
+    auto text = plan_at(50.0, 50.0);
+    write_text(folder / "q.plan", text.replace(text.find("\"vehicleType\": 1"), 16, "\"vehicleType\": 2"));
+    EXPECT_THAT(read(folder, "wing.toml", "[path]\nairspeed_m_per_s = 13\nwaypoints = \"q.plan\"\n").setup.uncertain,
+                Contains("the plan is for a multirotor, and the model of a wing"));
 }
 
 TEST(PathToml, ClimbsToThePlansAltitudeAndDescendsFromIt) {

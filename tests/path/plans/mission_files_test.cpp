@@ -6,6 +6,7 @@
 #include "path/plan_files.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -336,6 +337,61 @@ TEST(MissionFiles, FlyOneAirspeedWhereAsked) {
     ASSERT_EQ(entries.size(), 3U);
     for (const auto& entry : entries) EXPECT_FALSE(entry.airspeed_m_per_s);
     EXPECT_NEAR(*entries.back().circles, 60.0 * 12.0 / 314.159, 1e-3);
+}
+
+TEST(MissionFiles, NameAReturnThatIsNotWhereTheAutopilotGoes) {
+    const auto there = item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60") + "," + item(20, 2, "0, 0, 0, 0, 0, 0, 0");
+    EXPECT_TRUE(parse_qgc_plan(qgc(there), "q.plan", {}).missing.empty());
+    auto rally = qgc(there);
+    rally.insert(1, R"("rallyPoints": {"points": [[47.1, 8, 50]], "version": 2}, )");
+    EXPECT_EQ(parse_qgc_plan(rally, "q.plan", {}).missing,
+              std::vector<std::string>{"item 2: the return is flown to home, not to one of the plan's rally points"});
+    EXPECT_EQ(parse_qgc_plan(qgc(item(179, 0, "0, 0, 0, 0, 47.03, 8.0, 100") + "," + there), "q.plan", {}).missing,
+              std::vector<std::string>{"item 1: command 179 is not flown"});
+}
+
+TEST(MissionFiles, ChangeTheirSpeedBackToThatOfTheSettings) {
+    const auto place = item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60");
+    const auto plan = parse_qgc_plan(qgc(item(178, 2, "0, 12, -1, 0, 0, 0, 0") + "," + place + "," +
+                                         item(178, 2, "0, -2, -1, 0, 0, 0, 0") + "," + place),
+                                     "q.plan", {});
+    EXPECT_EQ(plan.entries[1].airspeed_m_per_s, 12.0);
+    EXPECT_FALSE(plan.entries[2].airspeed_m_per_s);
+    EXPECT_TRUE(plan.not_flown.empty());
+}
+
+TEST(MissionFiles, KeepTheAltitudeWhereAnItemStatesNone) {
+    const auto plan =
+        parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60") + "," + item(19, 3, "30, 0, 0, 0, 0, 0, 0")),
+                       "q.plan", {.radius_m = {}, .is_rotorcraft = true});
+    EXPECT_FALSE(plan.entries.back().altitude_m);
+}
+
+TEST(MissionFiles, HaveCirclesAsWideAsTheirAutopilotFliesThem) {
+    const auto radius_m = [](const std::string& firmware) {
+        auto text = qgc(item(18, 3, "2, 0, 0, 0, 47.01, 8.0, 60"));
+        text.insert(text.find("\"version\": 2"), firmware);
+        return parse_qgc_plan(text, "q.plan", {}).entries.back().radius_m;
+    };
+    EXPECT_EQ(radius_m(R"("firmwareType": 12, )"), 80.0);
+    EXPECT_EQ(radius_m(R"("firmwareType": 3, )"), 60.0);
+}
+
+TEST(MissionFiles, FlyAltitudesAboveTheTerrainByItsHeights) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "two_rows";
+    std::filesystem::create_directories(folder);
+    const char heights[] = "\x01\x2C\x01\x2C\x00\x64\x00\x64";  // 300 m in the north, 100 m in the south
+    write_file_atomically(folder / "N47E008.hgt", std::string(heights, 8));
+    const auto text =
+        qgc(item(16, 3, "0, 0, 0, null, 47.1, 8.1, 60") + "," + item(16, 10, "0, 0, 0, null, 47.3, 8.1, 60"));
+    const auto plan = parse_qgc_plan(text, "q.plan", {.radius_m = {}, .terrain = folder});
+    EXPECT_NEAR(plan.entries.back().altitude_m.value(), 60.0 + 200.0 * 0.3, 1e-6) << "home is at 47 degrees, 100 m";
+    EXPECT_TRUE(plan.missing.empty());
+    const auto flat = parse_qgc_plan(text, "q.plan", {});
+    EXPECT_EQ(flat.entries.back().altitude_m, 60.0);
+    EXPECT_EQ(flat.missing,
+              std::vector<std::string>{"item 2: the altitude above the terrain is flown as one above home: terrain "
+                                       "(--terrain) names a folder of its heights"});
 }
 
 TEST(MissionFiles, OfRealPlansAreFlownOrRefused) {

@@ -71,7 +71,7 @@ TEST(MissionsHeadline, CountsOutcomesTheWorstFirst) {
               "One of three missions runs empty");
     auto both = findings_of_files({"computing-only", "computing-only"});
     EXPECT_EQ(missions_headline(both), "Both missions land as planned");
-    both.missions.front().simulation.summary.uncertain = {"a part of the plan is not flown"};
+    both.missions.front().simulation.summary.uncertain = {"the plan is not flown as it is"};
     EXPECT_EQ(missions_headline(both), "One of two missions is uncertain");
     EXPECT_EQ(missions_headline({}), "");
 }

@@ -200,6 +200,24 @@ test("a plan of which a movement is not flown fits perhaps", { skip, ...patience
   assert.match(await page.textContent(".verdict-band"), /Perhaps.*item 3: the jump to item 1 is not flown/);
 });
 
+test("a plan above the terrain follows its tile where that is dropped", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  const items = [placeOf(1, 43.57, 1.48), placeOf(2, 43.57, 1.49)].map((item) => ({ ...item, frame: 10 }));
+  const plan = JSON.stringify({
+    fileType: "Plan", version: 1, groundStation: "QGroundControl",
+    mission: { version: 2, plannedHomePosition: [43.56, 1.48, 100], items },
+  });
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [named("above.plan", Buffer.from(plan))], "Choose a plan");
+  await page.waitForSelector(".verdict-band.doubt", patience);
+  assert.match(await page.textContent(".verdict-band"), /Perhaps.*drop the tiles of its heights \(N47E008.hgt\)/);
+  await choose(page, [named("n43e001.hgt", Buffer.alloc(2 * 61 * 61))], "Open");
+  await page.waitForSelector(".verdict-band.good", patience);
+  assert.match(await page.textContent(".command code"), /--terrain terrain/);
+});
+
 test("the second visit has the logs, and Forget all has none", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);

@@ -36,6 +36,8 @@ test("a .log beside its .data has definitions; alone it is a log", () => {
   assert.equal(files.kindOf("x/b.log", names), "log");
   assert.equal(files.kindOf("survey.KML", names), "plan");
   assert.equal(files.kindOf("photo.jpg", names), "log");
+  assert.equal(files.kindOf("srtm/n47e008.HGT", names), "terrain");
+  assert.equal(files.tileName("srtm/n47e008.HGT"), "N47E008.hgt");
   assert.equal(files.kindOf(".DS_Store", names), "ignored");
 });
 

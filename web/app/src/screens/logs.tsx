@@ -168,6 +168,7 @@ const formats: [string, string][] = [
   ["Telemetry", ".tlog, .csv with a time"],
   ["Plans", ".plan, .waypoints, .xml"],
   ["Areas", ".kml, .geojson"],
+  ["Terrain", ".hgt of SRTM"],
 ];
 
 function Empty({ project }: { project: Project }) {

@@ -9,10 +9,11 @@ import { Plot } from "../ui/plot";
 import { Slider } from "../ui/slider";
 import { track } from "../work/csv";
 import type { PlanBlock, PlanRemedy, Simulation } from "../work/documents";
-import { blocksOf, flyPlan, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
+import { blocksOf, flyPlan, isAboveTerrain, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
 import { useLatest } from "../work/latest";
+import { inPageWords } from "../work/question";
 import { areaFile, shapeOf, type PlanShape } from "../work/plan_shapes";
-import { errorsOf, type Aircraft, type Answered, type Curve, type Project, type State } from "../work/project";
+import { errorsOf, terrain_folder, type Aircraft, type Answered, type Curve, type Project, type State } from "../work/project";
 import { ChargePlot, NoLogs } from "./answer";
 import { FilesButton, takeFiles } from "./logs";
 
@@ -37,7 +38,7 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
   const lands =
     `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
   const words = kept != null ? chance(kept) : "";
-  const doubt = simulation.uncertain ? `${lands.slice(0, -1)}, but ${simulation.uncertain.join("; ")}.` : lands;
+  const doubt = simulation.uncertain ? `${lands.slice(0, -1)}, but ${inPageWords(simulation.uncertain.join("; "))}.` : lands;
   if (!simulation.keeps_reserve) {
     const where = below >= 0 && time_s[below] != null
       ? `Below the reserve of ${number(reserve, 0)} % after ${duration(time_s[below])}`
@@ -497,14 +498,25 @@ function usePlanOptions(project: Project, state: State) {
   return { options, setOptions, blocks, open };
 }
 
+/// The folder of the dropped tiles, for a plan whose altitudes are above the terrain.
+function useTerrain(project: Project, plan: string | undefined, tiles: number): string | undefined {
+  const [is_above, setAbove] = useState(false);
+  useEffect(() => {
+    setAbove(false);
+    if (plan && /\.(plan|waypoints)$/i.test(plan)) void project.text(plan).then((text) => setAbove(isAboveTerrain(text)));
+  }, [plan]);
+  return is_above && tiles > 0 ? terrain_folder : undefined;
+}
+
 export function PlanScreen({ project, state, aircraft }: { project: Project; state: State; aircraft?: Aircraft }) {
   const { options, setOptions, blocks, open } = usePlanOptions(project, state);
+  const terrain = useTerrain(project, options?.plan, state.tiles);
   const [drawing, setDrawing] = useState<Place[] | null>(null);
   const answered = aircraft?.now;
   const { found: flown, failed, asking } = useLatest(
     options,
-    async (latest) => (aircraft && answered ? flyPlan(project, aircraft, answered, latest) : ""),
-    [options, answered],
+    async (latest) => (aircraft && answered ? flyPlan(project, aircraft, answered, { ...latest, terrain }) : ""),
+    [options, answered, terrain],
   );
   const places = useFlownPlaces(project, aircraft);
   const shape = useShape(project, options?.plan ?? "");

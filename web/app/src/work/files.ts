@@ -33,7 +33,7 @@ export function freePath(path: string, taken: (path: string) => boolean): string
 }
 
 /// What a file is for; `other` is read as a log, so that the program says why it is none.
-export type Kind = "log" | "definitions" | "plan" | "packs" | "columns" | "ignored";
+export type Kind = "log" | "definitions" | "plan" | "terrain" | "packs" | "columns" | "ignored";
 
 /// Returns what a file is for, by its name and those that come with it.
 export function kindOf(path: string, names: Set<string>): Kind {
@@ -41,11 +41,17 @@ export function kindOf(path: string, names: Set<string>): Kind {
   if (/^(\.ds_store|thumbs\.db|desktop\.ini)$/.test(name) || name.startsWith("._")) return "ignored";
   if (name === "packs.toml") return "packs";
   if (/\.toml$/.test(name)) return "columns";
+  if (/^[ns]\d{2}[ew]\d{3}\.hgt$/.test(name)) return "terrain";
   if (/\.(plan|waypoints|kml|geojson)$/.test(name)) return "plan";
   if (/\.xml$/.test(name)) return name === "messages.xml" ? "definitions" : "plan";
   const stem = path.replace(/\.log$/i, "");
   const has_data = [".data", ".data.gz", ".DATA"].some((ending) => names.has(stem + ending));
   return /\.log$/i.test(name) && has_data ? "definitions" : "log";
+}
+
+/// Returns the name of a tile of heights as the program looks for it: "N47E008.hgt".
+export function tileName(path: string): string {
+  return `${(path.split("/").pop() ?? "").slice(0, 7).toUpperCase()}.hgt`;
 }
 
 async function filesOfEntry(entry: FileSystemEntry): Promise<Dropped[]> {

@@ -15,6 +15,8 @@ export interface PlanOptions {
   /// Of an area; absent: as the program chooses.
   spacing?: number;
   heading?: number;
+  /// Folder of tiles, for a plan with altitudes above the terrain.
+  terrain?: string;
 }
 
 export interface FlownPlan {
@@ -42,6 +44,7 @@ function flightOptions(folder: string, options: PlanOptions, question: Question)
     "--model", `${folder}/model.toml`, "--battery", `${folder}/answer-pack.toml`,
     ...options.blocks.flatMap((block) => ["--block", block]),
     ...option("airspeed", options.airspeed), ...option("spacing", options.spacing), ...option("heading", options.heading),
+    ...option("terrain", options.terrain),
     ...option("wind", wind), ...option("reserve", question.reserve), ...option("payload", question.payload_kg),
     ...(question.payload_kg != null ? option("mass", question.mass_kg) : []),
   ];
@@ -141,6 +144,11 @@ export async function remediesOf(
   const result = await project.runOnAnswer(aircraft.id, answered, args);
   if (!result.out) return [];
   return (JSON.parse(result.out) as { plans: { remedies: PlanRemedy[] }[] }).plans[0]?.remedies ?? [];
+}
+
+/// Returns whether a plan of QGroundControl or Mission Planner states altitudes above the terrain (MAV_FRAME 10, 11).
+export function isAboveTerrain(plan: string): boolean {
+  return /"frame":\s*1[01]\b|^\d+\s+[01]\s+1[01]\s/m.test(plan);
 }
 
 /// Flies a plan; returns why it cannot be flown where it cannot.

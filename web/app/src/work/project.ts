@@ -6,7 +6,7 @@ import { aircraftOf, linesOf, type BatchFound } from "./batch_lines";
 import { numbers, parseCsv, track, type Csv } from "./csv";
 import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, LogRecord, Manifest, Simulation } from "./documents";
-import { freePath, kindOf, safePath, type Dropped } from "./files";
+import { freePath, kindOf, safePath, tileName, type Dropped } from "./files";
 import * as storage from "./keep";
 import { optionsOf, type Question } from "./question";
 import { WorkQueue } from "./queue";
@@ -18,6 +18,8 @@ export type { Aircraft, Answered, Curve, LogLine, State } from "./state";
 const input_rejected = 3;
 const plans_folder = "plans";
 const missions_folder = "missions";
+/// Of tiles with the heights of the ground.
+export const terrain_folder = "terrain";
 const out_folder = "out";
 const settings_name = "settings.json";
 /// Answers quicker than this leave time for those of the sliders' steps.
@@ -46,6 +48,7 @@ export class Project {
     unused: [],
     waiting: [],
     plans: [],
+    tiles: 0,
     progress: null,
     read_s: null,
     busy: false,
@@ -119,7 +122,7 @@ export class Project {
       await this.engine.write(path, data instanceof File ? data : new File([data], names(path)));
       if (!path.startsWith(`${out_folder}/`)) this.files.set(path, data);
     }
-    this.set({ ready: true, plans: await this.plans() });
+    this.set({ ready: true, plans: await this.plans(), tiles: this.pathsOf(terrain_folder).length });
     if (this.logs().length > 0) this.queue.add(() => this.readLogs(), true);
   }
 
@@ -152,19 +155,23 @@ export class Project {
       if (kind === "ignored") continue;
       const wanted = kind === "mission"
         ? `${missions_folder}/${safe}`
-        : kind === "plan" ? `${plans_folder}/${names(safe)}` : `${logs_folder}/${safe}`;
+        : kind === "plan"
+          ? `${plans_folder}/${names(safe)}`
+          : kind === "terrain" ? `${terrain_folder}/${tileName(safe)}` : `${logs_folder}/${safe}`;
       if (this.isSame(wanted, file)) continue;
       const folder = wanted.slice(0, wanted.indexOf("/") + 1);
-      const place = kind === "plan" || kind === "mission"
+      const place = kind === "plan" || kind === "mission" || kind === "terrain"
         ? wanted
         : folder + freePath(wanted.slice(folder.length), (one) => this.files.has(folder + one));
       await this.engine.write(place, file);
       this.files.set(place, file);
       stored.set(place, file);
     }
-    const plans = [...stored.keys()].filter((path) => !path.startsWith(`${logs_folder}/`));
-    this.set({ failed: "", plans: await this.plans() });
-    if (stored.size > plans.length) this.queue.add(() => this.readLogs(), true);
+    const among = (...folders: string[]) =>
+      [...stored.keys()].filter((path) => folders.some((folder) => path.startsWith(`${folder}/`)));
+    const plans = among(plans_folder, missions_folder);
+    this.set({ failed: "", plans: await this.plans(), tiles: this.pathsOf(terrain_folder).length });
+    if (among(logs_folder).length > 0) this.queue.add(() => this.readLogs(), true);
     storage.keep(stored)
       .catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
     return plans;

@@ -57,6 +57,7 @@ export function inPageWords(text: string): string {
   return text
     .replace(/--capacity AH/g, "the capacity of the pack")
     .replace(/\(option --mass\)/g, "(the mass below the slider Payload)")
+    .replace(/terrain \(--terrain\) names a folder of its heights/g, "drop the tiles of its heights (N47E008.hgt)")
     .replace(/--airspeed/g, "the slider Airspeed")
     .replace(/--home-distance/g, "the distance from home")
     .replace(/--payload/g, "the slider Payload");

@@ -62,6 +62,8 @@ export interface State {
   unused: LogLine[];
   waiting: LogLine[];
   plans: string[];
+  /// Of terrain, which is there.
+  tiles: number;
   progress: Progress | null;
   read_s: number | null;
   busy: boolean;
