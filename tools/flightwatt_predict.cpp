@@ -6,6 +6,7 @@
 #include "cli/stage.h"
 #include "flight/flight_series.h"
 #include "flight/select.h"
+#include "live/prediction.h"
 #include "mechanical/prediction.h"
 #include "stages.h"
 
@@ -60,6 +61,8 @@ Prediction predict_flight(const cli::StageCall& call, const PredictArguments& ar
     live::Remarks remarks;
     try {
         auto prediction = live::predict_flight(basis, known.flown, known.data, remarks);
+        if (const auto deviation = live::model_deviation(prediction, basis); deviation.fraction > 1.0)
+            remarks.warnings.push_back(deviation.text + ": is it the model of this aircraft, as it flies today?");
         cli::warn_of(call, remarks);
         return prediction;
     } catch (...) {

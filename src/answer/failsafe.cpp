@@ -191,12 +191,17 @@ WayHome way_home(const FailsafeRequest& request) {
     if (!request.home_course_deg) way.wind.from_deg = way.course_deg;
     const auto& physical = request.model.physical;
     const double flown = physical ? physical->mean_airspeed_m_per_s : 0.0;
-    const double usual = request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) : flown;
+    // A rotorcraft keeps its speed over ground, against the wind.
+    const double usual =
+        request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) + request.wind.speed_m_per_s : flown;
     way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(usual);
     if (!way.distance_m) {
         way.missing = "the distance to home is not known; a flight with GPS shows it, --home-distance states it";
     } else if (!(way.airspeed_m_per_s > 0.0)) {
         way.missing = "the model has no airspeed; --airspeed states that of the way home";
+    } else if (physical && !request.airspeed_m_per_s && usual > max_predicted_airspeed_m_per_s(*physical)) {
+        way.missing = fmt::format(
+            "{:.1f} m/s of airspeed are beyond what its flights show; --airspeed states a slower way home", usual);
     } else if (const auto speed = ground_speed_m_per_s(way.airspeed_m_per_s, way.course_deg, way.wind)) {
         way.ground_speed_m_per_s = *speed;
     } else {

@@ -20,23 +20,51 @@ std::optional<double> mean_between(const flight::Track& track, double start_s, d
     return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// The largest distance from the first point of two tracks, whose values are so many metres each.
-double farthest_m(const flight::Track& east, const flight::Track& north, double east_m, double north_m) {
+/// Places of a log in metres, along time.
+struct Places {
+    std::vector<double> time_s;
+    std::vector<double> east_m;
+    std::vector<double> north_m;
+};
+
+/// Those of positions in metres or in degrees, which a sphere converts within 1 %; latitude and longitude 0 is none.
+Places places_of(const flight::FlightData& data) {
+    constexpr double m_per_degree = 111195.0;
+    const bool is_local = !data.east_m.empty() && !data.north_m.empty();
+    const auto& east = is_local ? data.east_m : data.longitude_deg;
+    const auto& north = is_local ? data.north_m : data.latitude_deg;
+    if (east.empty() || north.empty()) return {};
     const auto norths = resample(north, east.time_s);
-    double farthest = 0.0;
-    for (std::size_t i = 0; i < norths.size(); ++i)
-        farthest = std::max(farthest, std::hypot((east.value[i] - east.value.front()) * east_m,
-                                                 (norths[i] - norths.front()) * north_m));
-    return farthest;
+    Places places;
+    for (std::size_t i = 0; i < norths.size(); ++i) {
+        if (!is_local && east.value[i] == 0.0 && norths[i] == 0.0) continue;
+        const double parallel = is_local ? 1.0 : m_per_degree * std::cos(norths[i] / units::degree_per_rad);
+        places.time_s.push_back(east.time_s[i]);
+        places.east_m.push_back(east.value[i] * parallel);
+        places.north_m.push_back(norths[i] * (is_local ? 1.0 : m_per_degree));
+    }
+    return places;
 }
 
-/// The same of a log, by its positions in metres or in degrees, which a sphere converts within 1 %.
-std::optional<double> farthest_m(const flight::FlightData& data) {
-    constexpr double m_per_degree = 111195.0;
-    if (!data.east_m.empty() && !data.north_m.empty()) return farthest_m(data.east_m, data.north_m, 1.0, 1.0);
-    if (data.latitude_deg.empty() || data.longitude_deg.empty()) return std::nullopt;
-    const double parallel = std::cos(data.latitude_deg.value.front() / units::degree_per_rad);
-    return farthest_m(data.longitude_deg, data.latitude_deg, m_per_degree * parallel, m_per_degree);
+/// The largest distance from the first place between two times; places that no aircraft reaches from the last one are
+/// left out. std::nullopt without any.
+std::optional<double> farthest_m(const Places& places, double start_s, double end_s) {
+    constexpr double max_m_per_s = 100.0;
+    constexpr double position_error_m = 50.0;
+    std::optional<std::size_t> first;
+    std::size_t last = 0;
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < places.time_s.size(); ++i) {
+        if (places.time_s[i] < start_s || places.time_s[i] > end_s) continue;
+        if (!first) first = last = i;
+        const auto distance_m = [&](std::size_t from) {
+            return std::hypot(places.east_m[i] - places.east_m[from], places.north_m[i] - places.north_m[from]);
+        };
+        if (distance_m(last) > position_error_m + max_m_per_s * (places.time_s[i] - places.time_s[last])) continue;
+        last = i;
+        farthest = std::max(farthest, distance_m(*first));
+    }
+    return first ? std::optional(farthest) : std::nullopt;
 }
 
 }  // namespace
@@ -44,8 +72,10 @@ std::optional<double> farthest_m(const flight::FlightData& data) {
 std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
     std::vector<FlightFacts> facts;
     const auto& data = loaded.data;
-    const auto farthest = farthest_m(data);
-    for (const auto& sortie : loaded.phases.sorties)
+    const auto places = places_of(data);
+    for (const auto& sortie : loaded.phases.sorties) {
+        if (sortie.phases.empty()) continue;
+        const auto farthest = farthest_m(places, sortie.phases.front().start.time_s, sortie.phases.back().end.time_s);
         for (const auto& span : sortie.phases) {
             if (span.phase != flight::Phase::cruise) continue;
             const double start_s = span.start.time_s;
@@ -54,6 +84,7 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
                              farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s),
                              data.monitors});
         }
+    }
     return facts;
 }
 

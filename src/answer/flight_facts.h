@@ -14,7 +14,7 @@ struct FlightFacts {
     std::string flight;
     double cruise_s = 0.0;
     std::optional<double> ground_speed_m_per_s = {};  ///< mean of the cruise
-    std::optional<double> farthest_m = {};            ///< from where the log's positions begin
+    std::optional<double> farthest_m = {};            ///< from where the flight began
     std::optional<double> stated_capacity_ah = {};    ///< of the pack, by the log's parameters
     std::optional<double> mean_voltage_v = {};        ///< of the cruise
     std::vector<flight::MonitorShare> monitors = {};  ///< see FlightData

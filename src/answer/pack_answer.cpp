@@ -62,6 +62,9 @@ std::optional<Interval> range_c(const battery::BatteryIdentification& identified
 /// Flights that leave more than this factor between the ends of its interval do not determine a capacity.
 constexpr double max_capacity_ratio = 3.0;
 
+/// BATT_CAPACITY of ArduPilot where nobody has set it.
+constexpr double factory_capacity_ah = 3.3;
+
 /// Without a basis the flights' own estimate is the capacity, where they determine one.
 FoundPack identified_pack(battery::BatteryIdentification identified, const std::string& basis = {}) {
     FoundPack pack;
@@ -99,6 +102,14 @@ CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std:
     for (const auto& flight : facts)
         if (flight.stated_capacity_ah) logged_ah.insert(*flight.stated_capacity_ah);
     if (logged_ah.empty()) return {};
+    if (logged_ah == std::set{factory_capacity_ah}) {
+        CapacityChoice unset;
+        unset.warning = fmt::format(
+            "the logs' parameters state {} Ah, which ArduPilot has until somebody sets it (BATT_CAPACITY): it is not used; "
+            "--capacity AH states that on the pack's label",
+            factory_capacity_ah);
+        return unset;
+    }
     if (logged_ah.size() == 1)
         return {*logged_ah.begin(), "by the logs' parameters (BATT_CAPACITY, BAT1_CAPACITY)", true};
     CapacityChoice none;

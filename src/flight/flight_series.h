@@ -86,12 +86,14 @@ struct ClockRestart {
     bool operator==(const ClockRestart&) const = default;
 };
 
-/// Kinds of battery monitors that measure no pack of their own: the sum of others, or of the ESCs; fuel; and a current
-/// that is computed from the throttle.
+/// Kinds of battery monitors that measure no pack of their own: the sum of others, or of the ESCs; the pins of an
+/// earlier one; fuel; and a current that is computed from the throttle. And smart batteries with serial numbers of their own.
 inline constexpr auto sum_monitor = "sum";
 inline constexpr auto escs_monitor = "ESCs";
+inline constexpr auto same_pins_monitor = "same pins";
 inline constexpr auto fuel_monitor = "fuel";
 inline constexpr auto throttle_monitor = "throttle";
+inline constexpr auto smart_pack_monitor = "smart pack";
 
 /// What a log states of a flight apart from its tracks.
 struct FlightInfo {

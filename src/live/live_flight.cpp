@@ -37,10 +37,12 @@ class LiveFlight::Impl {
 
     void set_input(PredictionInput input) {
         input_ = std::move(input);
-        battery_warnings_.clear();
+        input_warnings_.clear();
+        for (const auto& reason : input_->uncertain)
+            input_warnings_.push_back(fmt::format("what is ahead may take more: {}", reason));
         if (!input_->battery) return;
         for (const auto& warning : battery_warnings(*input_->battery))
-            battery_warnings_.push_back(fmt::format("{}: {}", input_->battery_file, warning));
+            input_warnings_.push_back(fmt::format("{}: {}", input_->battery_file, warning));
     }
 
     void receive(IncomingMessage message, double arrival_s) {
@@ -146,9 +148,9 @@ class LiveFlight::Impl {
     std::optional<double> checked_s_;        ///< time of the last check of the record
     std::optional<double> updated_s_;
     bool ended_ = false;
-    std::vector<LiveAlarm> alarms_;              ///< of the last update
-    std::vector<std::string> warnings_;          ///< of the last check
-    std::vector<std::string> battery_warnings_;  ///< of its file
+    std::vector<LiveAlarm> alarms_;            ///< of the last update
+    std::vector<std::string> warnings_;        ///< of the last check
+    std::vector<std::string> input_warnings_;  ///< of the mission and the battery's file
     flight::FlightPhases phases_;
     std::vector<flight::LinkGap> gaps_;               ///< of the power, in the last update
     std::optional<battery::DischargeRecord> record_;  ///< of the last update
@@ -373,7 +375,7 @@ void LiveFlight::Impl::check_record(const flight::FlightData& data, const LiveSt
 }
 
 void LiveFlight::Impl::add_warnings(LiveState& state) const {
-    auto warnings = battery_warnings_;
+    auto warnings = input_warnings_;
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     state.warnings.insert(state.warnings.begin(), warnings.begin(), warnings.end());
     state.unusable = store_.skipped();

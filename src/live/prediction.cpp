@@ -1,6 +1,7 @@
 #include "live/prediction.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/units.h"
 #include "path/path.h"
 #include "path/trajectory.h"
@@ -240,6 +241,7 @@ PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     PredictionInput input{setup.mechanical.value(), mechanical::CruisePrior::curve, setup.duration_s[Phase::takeoff],
                           setup.duration_s[Phase::landing]};
     input.limits = {setup.cutoff_voltage_v, setup.reserve_soc_percent};
+    input.uncertain = setup.uncertain;
     for (const auto phase : flight::all_phases) {
         input.duration_sd_s[phase] = setup.uncertainty.duration_sd_s[phase];
         if (!input.duration_sd_s[phase] && setup.duration_is_stated[phase]) input.duration_sd_s[phase] = 0.0;
@@ -311,6 +313,28 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
         fmt::format("{} needs one of two flights or more: flightwatt fit --model-kind physical FLIGHT...", option));
 }
 
+ModelDeviation model_deviation(const Prediction& prediction, const PredictionInput& input) {
+    if (!(prediction.flown.cruise_s() > 0.0)) return {};
+    if (prediction.uses_physical_model) {
+        const auto& model = input.model.physical.value();
+        const double level = prediction.cruise.gain;
+        if (!model.level_sd || prediction.flown.motion.bins.empty()) return {};
+        const double reach = *model.level_sd * student_t_half_width(model.degrees_of_freedom);
+        return {
+            std::abs(level) / reach,
+            fmt::format("the power of this flight differs from the model by {:+.1f} %, 95 of 100 flights by {:.1f} %",
+                        units::percentage(level, 1.0), units::percentage(reach, 1.0))};
+    }
+    const auto expected =
+        predict_before_flight(forecast_of(input.model, flight::Phase::cruise), prediction.flown.cruise_s());
+    const auto interval = interval_95(expected);
+    if (!interval) return {};
+    const double measured_wh = prediction.flown.cruise_energy_wh;
+    return {std::abs(measured_wh - expected.energy_wh) / (interval->high_wh - expected.energy_wh),
+            fmt::format("the cruise so far took {:.3f} Wh; 95 of 100 flights of the model take {:.3f} to {:.3f} Wh",
+                        measured_wh, interval->low_wh, interval->high_wh)};
+}
+
 double initial_soc_percent(const PredictionInput& input, const battery::DischargeRecord& flown) {
     return input.initial_soc_percent ? *input.initial_soc_percent : initial_soc_by_voltage_percent(input, flown);
 }
@@ -322,6 +346,16 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
                          "give --initial-soc PERCENT");
     }
     const double rest_v = flown.resting_voltage_v + battery.resistance_ohm * flown.resting_current_a;
+    constexpr double most_of_full = 1.06;  // high-voltage cells, and sensors that are 2 % off
+    constexpr double least_of_empty = 0.85;
+    const double full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
+    const double empty_v = open_circuit_voltage_v(battery, 0.0);
+    if (rest_v > most_of_full * full_v || rest_v < least_of_empty * empty_v)
+        throw InputError({input.battery_file},
+                         fmt::format("the pack of the flight has {:.1f} V at rest, and this one {:.1f} V when full and "
+                                     "{:.1f} V when empty",
+                                     rest_v, full_v, empty_v),
+                         "give the battery of this aircraft");
     return battery::resting_soc_percent(battery, rest_v);
 }
 

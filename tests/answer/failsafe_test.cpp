@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -176,6 +177,17 @@ TEST(FailsafeCard, TakesTheWindFromAheadUnlessTheCourseIsKnown) {
     EXPECT_EQ(make_failsafe_card(request).low->remaining_mah, worst.low->remaining_mah);
     request.home_course_deg = 270.0;
     EXPECT_LT(make_failsafe_card(request).low->remaining_mah, worst.low->remaining_mah);
+}
+
+TEST(FailsafeCard, OfARotorcraftReturnsAsFastOverGroundInAnyWind) {
+    auto request = wing_request();
+    request.model.is_rotorcraft = true;
+    request.wind.speed_m_per_s = 4.0;
+    request.home_distance_m = 500.0;
+    const double calm_m_per_s = request.model.physical->mean_airspeed_m_per_s;
+    EXPECT_THAT(describe(make_failsafe_card(request)), HasSubstr(fmt::format("{:.1f} m/s", calm_m_per_s + 4.0)));
+    request.wind.speed_m_per_s = 40.0;
+    EXPECT_THAT(make_failsafe_card(request).low_missing, HasSubstr("--airspeed states a slower way home"));
 }
 
 TEST(FailsafeCard, HasNoLowActionWithoutItsInputs) {

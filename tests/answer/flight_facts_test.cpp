@@ -3,6 +3,9 @@
 #include "helpers/sample_logs.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,6 +22,40 @@ TEST(FlightFacts, AreOfTheCruiseOfAFlight) {
     EXPECT_NEAR(facts.front().ground_speed_m_per_s.value(), 13.0, 2.0);
     EXPECT_NEAR(facts.front().mean_voltage_v.value(), 11.5, 1.0);
     EXPECT_FALSE(facts.front().stated_capacity_ah) << "Paparazzi's logs state none";
+}
+
+/// A flight from 100 to 200 s that flies 500 m away and back, after a way of 3 km to where it starts.
+flight::LoadedFlight flown_places() {
+    flight::LoadedFlight loaded;
+    for (int second = 0; second <= 300; ++second) {
+        const double time_s = second;
+        loaded.data.latitude_deg.time_s.push_back(time_s);
+        loaded.data.longitude_deg.time_s.push_back(time_s);
+        const double way_m =
+            std::max(0.0, 30.0 * (100.0 - time_s)) + std::max(0.0, 500.0 - 10.0 * std::abs(time_s - 150.0));
+        loaded.data.latitude_deg.value.push_back(47.0 + way_m / 111195.0);
+        loaded.data.longitude_deg.value.push_back(8.0);
+    }
+    flight::PhaseSpan cruise;
+    cruise.phase = flight::Phase::cruise;
+    cruise.start.time_s = 100.0;
+    cruise.end.time_s = 200.0;
+    flight::Sortie sortie;
+    sortie.phases.push_back(cruise);
+    loaded.phases.sorties.push_back(sortie);
+    return loaded;
+}
+
+TEST(FlightFacts, CountTheDistanceFromWhereTheFlightBegan) {
+    EXPECT_NEAR(flight_facts(flown_places()).front().farthest_m.value(), 500.0, 1.0);
+}
+
+TEST(FlightFacts, LeaveOutPlacesThatNoAircraftReaches) {
+    auto loaded = flown_places();
+    loaded.data.latitude_deg.value[150] += 3000.0 / 111195.0;
+    for (std::size_t second = 170; second < 174; ++second)
+        loaded.data.latitude_deg.value[second] = loaded.data.longitude_deg.value[second] = 0.0;
+    EXPECT_NEAR(flight_facts(loaded).front().farthest_m.value(), 490.0, 1.0);
 }
 
 TEST(MeanGroundSpeed, WeighsCruisesByTheirDuration) {

@@ -28,6 +28,13 @@ TEST(ChooseCapacity, HasNoneWhereLogsDiffer) {
     EXPECT_FALSE(choose_capacity({}, {logged({})}).value_ah);
 }
 
+TEST(ChooseCapacity, DoesNotTakeThatOfAParameterWhichNobodySet) {
+    const auto unset = choose_capacity({}, {logged(3.3), logged(3.3)});
+    EXPECT_FALSE(unset.value_ah);
+    EXPECT_THAT(unset.warning, HasSubstr("3.3 Ah, which ArduPilot has until somebody sets it"));
+    EXPECT_EQ(choose_capacity(3.3, {logged(3.3)}).value_ah, 3.3);
+}
+
 TEST(IdentifiedRecords, OfManyHaveBothEndsTheFullestAndTheDeepest) {
     std::vector<battery::DischargeRecord> records(200);
     for (auto& record : records) record.charge_ah = {0.0, 1.0};

@@ -81,6 +81,15 @@ TEST(LiveFlight, TheTimeLeftRunsDownWhileTheLinkIsSilent) {
     EXPECT_EQ(flight.update(1e6).turn_home->latest_in_s, 0.0);
 }
 
+TEST(LiveFlight, WarnsOfAMissionThatIsUncertain) {
+    auto basis = test::wing_basis();
+    basis.uncertain = {"the plan is not flown as it is: item 3: the jump to item 1 is not flown: it has no end"};
+    const auto log = test::sample(1);
+    LiveFlight flight(test::options_of(log), basis, nullptr);
+    test::receive_all(flight, test::messages_of(log, 100.0));
+    EXPECT_THAT(flight.update().warnings, testing::Contains("what is ahead may take more: " + basis.uncertain.front()));
+}
+
 TEST(LiveFlight, WarnsOfACapacityThatContradictsTheFlights) {
     const auto log = test::sample(1);
     auto basis = test::wing_basis();

@@ -1,7 +1,9 @@
 #include "live/prediction.h"
 
 #include "base/error.h"
+#include "battery/battery_toml.h"
 #include "helpers/made_up_paths.h"
+#include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 #include "mission/mission_file.h"
 #include "mission/mission_read_options.h"
@@ -60,6 +62,36 @@ TEST(Prediction, RefusesAModelThatDoesNotSayHowFlightsDiffer) {
     const mechanical::MechanicalModel model;
     EXPECT_THROW(require_interval(model, flight::Phase::cruise, "model.toml"), InputError);
     EXPECT_THROW(require_physical(model, "model.toml", "--airspeed"), InputError);
+}
+
+TEST(Prediction, RefusesTheBatteryOfAnotherAircraft) {
+    PredictionInput basis;
+    basis.battery = battery::read_battery(test::source_dir() / "fits/battery/synthetic-3s.toml");
+    basis.battery_file = "pack.toml";
+    const auto refusal_at = [&](double rest_v) {
+        battery::DischargeRecord flown;
+        flown.resting_voltage_v = rest_v;
+        return test::rejected([&] { initial_soc_percent(basis, flown); });
+    };
+    EXPECT_THAT(refusal_at(24.9), testing::HasSubstr("pack.toml: the pack of the flight has 24.9 V at rest"));
+    EXPECT_NE(refusal_at(7.4), "");
+    for (const double rest_v : {10.0, 12.4, 12.9}) EXPECT_EQ(refusal_at(rest_v), "") << rest_v;
+}
+
+TEST(Prediction, NamesACruiseThatIsNotOfItsModel) {
+    PredictionInput basis;
+    basis.model = mechanical::read_predicting_model(test::source_dir() / "fits/mechanical/synthetic-wing.toml");
+    auto prediction = made_up();
+    EXPECT_EQ(model_deviation(prediction, basis).fraction, 0.0) << "no cruise yet";
+    prediction.flown.cruise_start_s = 0.0;
+    prediction.flown.until_s = 600.0;
+    const auto expected =
+        predict_before_flight(forecast_of(basis.model, flight::Phase::cruise), prediction.flown.cruise_s()).energy_wh;
+    prediction.flown.cruise_energy_wh = expected;
+    EXPECT_LT(model_deviation(prediction, basis).fraction, 0.1);
+    prediction.flown.cruise_energy_wh = 2.0 * expected;
+    EXPECT_GT(model_deviation(prediction, basis).fraction, 1.0);
+    EXPECT_THAT(model_deviation(prediction, basis).text, testing::HasSubstr("95 of 100 flights of the model take"));
 }
 
 TEST(Prediction, ABatteryOfConstantVoltageNeedsItsStateOfCharge) {

@@ -177,6 +177,48 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
                                            : "";
 }
 
+constexpr int max_monitors = 9;
+
+/// A parameter of a battery monitor, by its number from 1 on: "BATT2_MONITOR".
+std::optional<double> monitor_parameter(const std::map<std::string, double>& parameters, int number, const char* name) {
+    const auto found =
+        parameters.find(number == 1 ? fmt::format("BATT_{}", name) : fmt::format("BATT{}_{}", number, name));
+    return found == parameters.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The pins of an analog monitor of voltage and current.
+std::optional<std::pair<double, double>> analog_pins(const std::map<std::string, double>& parameters, int number) {
+    constexpr double analog_voltage_and_current = 4.0;
+    const auto volt = monitor_parameter(parameters, number, "VOLT_PIN");
+    const auto curr = monitor_parameter(parameters, number, "CURR_PIN");
+    if (monitor_parameter(parameters, number, "MONITOR") != analog_voltage_and_current || !volt || !curr)
+        return std::nullopt;
+    return std::pair(*volt, *curr);
+}
+
+/// The serial number of a smart battery, where it is stated.
+std::optional<double> smart_serial(const std::map<std::string, double>& parameters, int number) {
+    const std::set<double> smart{5.0,  7.0,  8.0, 13.0,
+                                 14.0, 16.0, 19.0};  // Solo, SMBus, DroneCAN, SUI3, SUI6, Maxell, Rotoye
+    const auto kind = monitor_parameter(parameters, number, "MONITOR");
+    const auto serial = monitor_parameter(parameters, number, "SERIAL_NUM");
+    return kind && smart.contains(*kind) && serial && *serial >= 0.0 ? serial : std::nullopt;
+}
+
+/// Adds monitors with the pins of an earlier one, and smart batteries that differ in their serial numbers.
+void add_known_packs(const std::map<std::string, double>& parameters, std::map<std::string, std::string>& kinds) {
+    std::set<std::pair<double, double>> pins;
+    std::map<double, std::vector<std::string>> packs;
+    for (int number = 1; number <= max_monitors; ++number) {
+        const auto id = fmt::format("{}", number - 1);
+        if (const auto own = analog_pins(parameters, number); own && !pins.insert(*own).second)
+            kinds[id] = same_pins_monitor;
+        if (const auto serial = smart_serial(parameters, number)) packs[*serial].push_back(id);
+    }
+    for (const auto& [serial, ids] : packs)
+        if (packs.size() > 1 && ids.size() == 1) kinds[ids.front()] = smart_pack_monitor;
+}
+
 }  // namespace
 
 std::string board_serial(const telemetry::LogFacts& facts) {
@@ -189,31 +231,27 @@ void add_monitor_kinds(const std::map<std::string, double>& parameters, FlightSe
     static const std::map<double, std::string> kinds{
         {9.0, escs_monitor},  {10.0, sum_monitor},  {11.0, fuel_monitor},     {12.0, fuel_monitor},
         {18.0, fuel_monitor}, {24.0, fuel_monitor}, {25.0, throttle_monitor}, {27.0, fuel_monitor}};
-    constexpr int max_monitors = 9;
     constexpr double voltage_only = 3.0;
     bool is_measured = false;
     bool is_computed = false;
     for (int number = 1; number <= max_monitors; ++number) {
-        const auto found = parameters.find(number == 1 ? "BATT_MONITOR" : fmt::format("BATT{}_MONITOR", number));
-        if (found == parameters.end() || found->second == 0.0 || found->second == voltage_only) continue;
-        const auto kind = kinds.find(found->second);
+        const auto found = monitor_parameter(parameters, number, "MONITOR");
+        if (!found || *found == 0.0 || *found == voltage_only) continue;
+        const auto kind = kinds.find(*found);
         if (kind != kinds.end()) series.monitor_kinds[fmt::format("{}", number - 1)] = kind->second;
         is_computed = is_computed || (kind != kinds.end() && kind->second == throttle_monitor);
         is_measured = is_measured || kind == kinds.end() || kind->second == escs_monitor;
     }
+    add_known_packs(parameters, series.monitor_kinds);
     if (is_computed && !is_measured) series.current_origin = CurrentOrigin::throttle;
 }
 
 std::string pack_serials(const std::map<std::string, double>& parameters) {
-    const std::set<double> smart{5.0, 7.0, 13.0, 14.0, 16.0, 19.0};  // Solo, SMBus, SUI3, SUI6, Maxell, Rotoye
-    constexpr int max_monitors = 9;
+    constexpr double dronecan = 8.0;
     std::vector<double> serials;
     for (int number = 1; number <= max_monitors; ++number) {
-        const auto prefix = number == 1 ? std::string("BATT") : fmt::format("BATT{}", number);
-        const auto kind = parameters.find(prefix + "_MONITOR");
-        const auto serial = parameters.find(prefix + "_SERIAL_NUM");
-        if (kind != parameters.end() && serial != parameters.end() && smart.contains(kind->second))
-            serials.push_back(serial->second);
+        const auto serial = smart_serial(parameters, number);
+        if (serial && monitor_parameter(parameters, number, "MONITOR") != dronecan) serials.push_back(*serial);
     }
     return joined_serials(serials);
 }

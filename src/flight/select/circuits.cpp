@@ -148,6 +148,7 @@ bool agree(const Track& track, const Track& other, double within) {
 }
 
 bool see_one_pack(const Monitor& monitor, const Monitor& other) {
+    if (monitor.stated == smart_pack_monitor && other.stated == smart_pack_monitor) return false;
     const bool by_escs = monitor.stated == escs_monitor || other.stated == escs_monitor;
     return agree(monitor.voltage_v, other.voltage_v, same_voltage) &&
            agree(monitor.current_a, other.current_a, by_escs ? same_current_by_escs : same_current);
@@ -179,6 +180,9 @@ void exclude(std::vector<Monitor>& monitors) {
             monitor.exclusion = "a spare input, as it draws less than 2 % of the power";
         else if (monitors.size() > 1 && (monitor.stated == sum_monitor || is_sum_of_others(monitors, m)))
             monitor.exclusion = "the sum of others";
+        else if (monitor.stated == same_pins_monitor)
+            monitor.exclusion =
+                "on the pins of another, by its parameters: one pack, whose energy would be counted twice";
     }
     for (std::size_t m = 1; m < monitors.size(); ++m) {
         for (std::size_t other = 0; other < m && monitors[m].exclusion.empty(); ++other)

@@ -104,34 +104,6 @@ void add_reserve_alarm(const LiveState& state, std::string_view before, std::vec
     alarms.push_back({"reserve", is_alarm ? alarm : caution, reserve_text(battery, probability), std::move(action)});
 }
 
-/// The deviation of the cruise from the model, of the half width of the 95 % interval.
-struct ModelDeviation {
-    double fraction = 0.0;
-    std::string text;
-};
-
-ModelDeviation model_deviation(const Prediction& prediction, const PredictionInput& input) {
-    if (!(prediction.flown.cruise_s() > 0.0)) return {};
-    if (prediction.uses_physical_model) {
-        const auto& model = input.model.physical.value();
-        const double level = prediction.cruise.gain;
-        if (!model.level_sd || prediction.flown.motion.bins.empty()) return {};
-        const double reach = *model.level_sd * student_t_half_width(model.degrees_of_freedom);
-        return {
-            std::abs(level) / reach,
-            fmt::format("the power of this flight differs from the model by {:+.1f} %, 95 of 100 flights by {:.1f} %",
-                        units::percentage(level, 1.0), units::percentage(reach, 1.0))};
-    }
-    const auto expected =
-        predict_before_flight(forecast_of(input.model, flight::Phase::cruise), prediction.flown.cruise_s());
-    const auto interval = interval_95(expected);
-    if (!interval) return {};
-    const double measured_wh = prediction.flown.cruise_energy_wh;
-    return {std::abs(measured_wh - expected.energy_wh) / (interval->high_wh - expected.energy_wh),
-            fmt::format("the cruise so far took {:.3f} Wh; 95 of 100 flights of the model take {:.3f} to {:.3f} Wh",
-                        measured_wh, interval->low_wh, interval->high_wh)};
-}
-
 }  // namespace
 
 bool states_flight(const flight::FlightData& data) {

@@ -2,6 +2,7 @@
 
 #include "base/input_file.h"
 #include "base/units.h"
+#include "flight/families/ardupilot_family.h"
 #include "flight/flight_identity.h"
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
@@ -41,6 +42,25 @@ double energy_wh(const FlightSeries& series) {
     const auto power = circuit_power(series);
     if (power.empty()) return 0.0;
     return integrated(power.time_s, power.value, power.time_s.front(), power.time_s.back()) / units::seconds_per_hour;
+}
+
+TEST(LogFamily, KnowsMonitorsOnTheSamePinsAndSmartPacks) {
+    const auto kinds = [](const std::map<std::string, double>& parameters) {
+        FlightSeries series;
+        add_monitor_kinds(parameters, series);
+        return series.monitor_kinds;
+    };
+    using Kinds = std::map<std::string, std::string>;
+    std::map<std::string, double> analog{{"BATT_MONITOR", 4.0},  {"BATT_VOLT_PIN", 2.0},  {"BATT_CURR_PIN", 3.0},
+                                         {"BATT2_MONITOR", 4.0}, {"BATT2_VOLT_PIN", 2.0}, {"BATT2_CURR_PIN", 3.0}};
+    EXPECT_EQ(kinds(analog), (Kinds{{"1", same_pins_monitor}}));
+    analog["BATT2_CURR_PIN"] = 4.0;
+    EXPECT_EQ(kinds(analog), Kinds{});
+    std::map<std::string, double> smart{
+        {"BATT_MONITOR", 8.0}, {"BATT_SERIAL_NUM", 11.0}, {"BATT2_MONITOR", 8.0}, {"BATT2_SERIAL_NUM", 12.0}};
+    EXPECT_EQ(kinds(smart), (Kinds{{"0", smart_pack_monitor}, {"1", smart_pack_monitor}}));
+    smart["BATT2_SERIAL_NUM"] = -1.0;
+    EXPECT_EQ(kinds(smart), Kinds{}) << "any serial number";
 }
 
 TEST(LogFamily, ReadsACopter) {

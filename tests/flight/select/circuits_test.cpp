@@ -100,6 +100,17 @@ TEST(Circuits, LeaveOutAMonitorThatIsASumByItsParameter) {
     EXPECT_NEAR(first_w(series), 0.9 * 16.0, 1e-9);
 }
 
+TEST(Circuits, KnowByParametersWhichMonitorsMeasureOnePack) {
+    auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.93)}});
+    EXPECT_NEAR(first_w(series), 1.93 * 16.0, 1e-9);
+    series.monitor_kinds["1"] = same_pins_monitor;
+    EXPECT_NEAR(first_w(series), 16.0, 1e-9);
+    auto equal = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(1.01)}});
+    EXPECT_NEAR(first_w(equal), 16.0, 1e-9) << "as far as currents tell";
+    equal.monitor_kinds["0"] = equal.monitor_kinds["1"] = smart_pack_monitor;
+    EXPECT_NEAR(first_w(equal), 2.01 * 16.0, 1e-9);
+}
+
 TEST(Circuits, StateTheCapacityOfThePacksThatCountOnlyWhereEachIsStated) {
     auto series = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.6)}});
     series.monitor_capacities_ah["0"] = 5.0;
