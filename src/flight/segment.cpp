@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -21,6 +23,12 @@ namespace {
 
 constexpr double min_flight_s = 5.0;
 constexpr double min_motion_m = 0.5;  // above the noise of an altitude
+
+/// A state as a whole number; none beyond those of an int, as MAVLink's custom_mode may be.
+std::optional<int> whole_number(double state) {
+    constexpr double most = std::numeric_limits<int>::max();
+    return std::abs(state) <= most ? std::optional(static_cast<int>(state)) : std::nullopt;
+}
 
 /// An edge with its evidence.
 PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, double exact_s) {
@@ -34,8 +42,8 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
     edge.altitude_m = nearest(grid.altitude_m);
     edge.gap_s = interval_around_s(grid.altitude_time_s, time_s);
     if (!grid.throttle_percent.empty()) edge.throttle_percent = nearest(grid.throttle_percent);
-    if (const auto& mode = data.mode; !mode.empty()) edge.mode = static_cast<int>(state_at(mode, time_s));
-    if (const auto& block = data.block; !block.empty()) edge.block = static_cast<int>(state_at(block, time_s));
+    if (const auto& mode = data.mode; !mode.empty()) edge.mode = whole_number(state_at(mode, time_s));
+    if (const auto& block = data.block; !block.empty()) edge.block = whole_number(state_at(block, time_s));
     for (const double takeoff : data.takeoff.time_s) {
         const double after = takeoff - time_s;
         if (!edge.takeoff_after_s || std::abs(after) < std::abs(*edge.takeoff_after_s)) edge.takeoff_after_s = after;

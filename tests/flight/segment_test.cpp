@@ -52,6 +52,15 @@ using test::series_of;
 using test::sortie;
 using testing::HasSubstr;
 
+TEST(Segment, LeavesOutAModeThatIsNoNumberOfAnInt) {
+    auto data = select_tracks(series_of(columns_of(sortie(100), 0.5)));
+    for (const double mode : {4.0, 2.18e9}) {
+        static_cast<Track&>(data.mode) = {.name = "mode", .time_s = {data.power_w.time_s.front()}, .value = {mode}};
+        const auto edge = segment(data).sorties.at(0).phases.front().start;
+        EXPECT_EQ(edge.mode, mode < 1e9 ? std::optional(4) : std::nullopt);
+    }
+}
+
 struct Edges {
     double lift_off, takeoff_end, landing_start, touchdown;
 };
