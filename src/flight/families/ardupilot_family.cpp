@@ -19,6 +19,8 @@
 namespace flightwatt::flight {
 namespace {
 
+constexpr double is_true = 1.0;  // of flags: an airspeed sensor is used, and is healthy
+
 /// 1 and 0 of events that switch a state on and off.
 template <int on, int off>
 double switched(const std::vector<double>& id) {
@@ -263,7 +265,8 @@ const LogFamily& ardupilot_family() {
                                    {"ESC", "Instance"},
                                    {"BARO", "I"},
                                    {"GPS", "I", "Status", min_fix},
-                                   {"ARSP", "I"},
+                                   {"ARSP", "I", "U", is_true},
+                                   {"ARSP", "I", "H", is_true},
                                    {"XKF2", "C"},
                                    {"NKF2", "C"}},
                                   describe_ardupilot,

@@ -44,7 +44,7 @@ Instances instances_of(const MessageTable& table, const LogFamily& family) {
         if (number != nullptr && !instances.numbered) instances.of_row = number->values;
         instances.numbered = instances.numbered || number != nullptr;
         for (std::size_t i = 0; valid != nullptr && i < rows; ++i)
-            instances.counts[i] = valid->values[i] >= rule.min_valid;
+            instances.counts[i] = instances.counts[i] && valid->values[i] >= rule.min_valid;
     }
     for (const double number : instances.of_row)
         if (!std::isnan(number) && instances.all.size() < max_instances) instances.all.insert(number);

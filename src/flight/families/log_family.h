@@ -33,7 +33,7 @@ struct FamilyTrack {
     const char* device = nullptr;    ///< id of the device, for a message of a single device
 };
 
-/// A rule for the rows of a message that has several instances, or rows that are not valid.
+/// A rule for the rows of a message that has several instances, or rows that are not valid. A row needs all rules.
 struct FamilyMessage {
     const char* message;
     const char* instance = nullptr;  ///< field with the number of the instance

@@ -347,6 +347,21 @@ TEST(LogFamily, FixIsThatOfAnyReceiver) {
     EXPECT_EQ(parse_series_csv(to_csv(series), "x.csv").tracks, series.tracks);
 }
 
+TEST(LogFamily, AirspeedIsThatOfAHealthySensorInUse) {
+    auto log = test::dataflash_log(100, "ArduPlane V4.3.1 (2cb4b85a)") +
+               test::dataflash_format(4, "ARSP", "QBfBB", "TimeUS,I,Airspeed,U,H", 15);
+    const auto sensor = [&](unsigned time_s, float m_per_s, std::uint8_t is_used, std::uint8_t is_healthy) {
+        log += test::dataflash_message(4, test::little_endian(std::uint64_t{time_s} * 1'000'000) +
+                                              test::little_endian(std::uint8_t{0}) + test::little_endian(m_per_s) +
+                                              test::little_endian(is_used) + test::little_endian(is_healthy));
+    };
+    sensor(20, 4.0F, 0, 1);
+    sensor(21, 15.0F, 1, 1);
+    sensor(22, 5.0F, 1, 0);
+    sensor(23, 16.0F, 1, 1);
+    EXPECT_THAT(select_track(series_of(log), "airspeed_m_per_s").value, testing::ElementsAre(15, 16));
+}
+
 TEST(Batteries, InParallelAreSummed) {
     const auto series = series_of(test::ulog_log(50), "x.ulg");
     EXPECT_TRUE(series.notes.empty()) << "the names of ULog's fields state their units";
