@@ -106,6 +106,7 @@ Diagnostics selection_diagnostics(const FlightData& data) {
                                                                                     : "corrected tracks",
                 (data.*member).notes);
     }
+    if (data.airspeed_estimate) add(warning, "wrong airspeed sensor", data.airspeed_m_per_s.not_chosen);
     for (const auto& skip : data.skipped)
         is_partial_record(skip) ? add(note, "cut at power-off", {describe(skip)})
                                 : add(warning, "damaged log", {describe(skip)});

@@ -38,6 +38,9 @@ constexpr double min_sector_part = 0.01;  // of the samples
 constexpr double heading_sd_part = 0.03;  // of the airspeed, by which it may differ with the heading
 constexpr double gust_sd_part = 0.1;      // of the wind, in means over 30 s; and independently
 constexpr double calm_gust_sd = 0.4;      // in any wind
+// A quarter of the airspeed is half of its pressure: thin air at 3,000 m and a sensor without calibration explain less.
+constexpr double max_sensor_error_part = 0.25;
+constexpr double max_sensor_error_sd = 3.0;  // of the mean estimate
 
 struct GroundVelocity {
     double time_s = 0.0;
@@ -244,8 +247,10 @@ std::vector<WindWindow> fit_windows(const Velocities& velocities) {
     }
 }
 
-/// The error of means over 30 s, and of the mean of all: that of the wind along the mean heading, and gusts.
-void add_errors(const std::vector<WindWindow>& windows, AirspeedEstimate& estimate) {
+/// The estimate with the error of means over 30 s, and of the mean of all: that of the wind along the mean heading, and
+/// gusts.
+AirspeedEstimate estimate_of(const std::vector<WindWindow>& windows) {
+    AirspeedEstimate estimate;
     double bins = 0.0;
     double bins_variance = 0.0;
     double mean_variance = 0.0;
@@ -276,6 +281,7 @@ void add_errors(const std::vector<WindWindow>& windows, AirspeedEstimate& estima
     }
     estimate.sd_m_per_s = std::sqrt(bins_variance / bins);
     estimate.mean_sd_m_per_s = std::sqrt(mean_variance) / bins;
+    return estimate;
 }
 
 std::string describe(const EstimatedWind& wind) {
@@ -290,9 +296,31 @@ void add_point(ChosenTrack& track, double time_s, double value) {
     track.value.push_back(value);
 }
 
-/// Sets airspeed, wind and their errors.
-void set_estimate(const std::vector<WindWindow>& windows, FlightData& data) {
-    AirspeedEstimate estimate;
+/// The finding against a sensor whose mean is far from that of the estimate; empty if they agree or share no time.
+std::string disproof(const Track& sensor, const std::vector<WindWindow>& windows, const AirspeedEstimate& estimate) {
+    double sensor_sum = 0.0;
+    double estimate_sum = 0.0;
+    double count = 0.0;
+    for (const auto& [velocities, fit] : windows) {
+        for (const auto& velocity : velocities) {
+            if (velocity.time_s < sensor.time_s.front() || velocity.time_s > sensor.time_s.back()) continue;
+            sensor_sum += value_at(sensor, velocity.time_s);
+            estimate_sum += through_air(fit.circle, velocity).norm();
+            ++count;
+        }
+    }
+    const double error = std::abs(sensor_sum - estimate_sum);
+    const double explained =
+        std::max(max_sensor_error_part * estimate_sum, max_sensor_error_sd * estimate.mean_sd_m_per_s * count);
+    if (!(error > explained)) return "";
+    return fmt::format(
+        "airspeed: the sensor ({}) reads {:.1f} m/s on average where the velocity over ground on all headings shows {:.1f} m/s: "
+        "the latter is used",
+        sensor.source, sensor_sum / count, estimate_sum / count);
+}
+
+/// Sets airspeed and wind.
+void set_estimate(const std::vector<WindWindow>& windows, AirspeedEstimate estimate, FlightData& data) {
     const auto source = fmt::format("{} less the wind of its headings", data.ground_speed_m_per_s.source);
     ChosenTrack east{{"wind_east_m_per_s", source}};
     ChosenTrack north{{"wind_north_m_per_s", source}};
@@ -313,7 +341,6 @@ void set_estimate(const std::vector<WindWindow>& windows, FlightData& data) {
         for (const auto& velocity : velocities)
             add_point(airspeed, velocity.time_s, through_air(fit.circle, velocity).norm());
     }
-    add_errors(windows, estimate);
     airspeed.notes.push_back(fmt::format(
         "the airspeed is estimated within {:.1f} m/s (1 sd, means over 30 s) from {} and course: wind {}; an "
         "airspeed that differs with the heading would be wind",
@@ -328,11 +355,22 @@ void set_estimate(const std::vector<WindWindow>& windows, FlightData& data) {
 }  // namespace
 
 void estimate_airspeed(FlightData& data) {
-    if (data.firmware != "fixedwing" || !data.airspeed_m_per_s.empty()) return;
+    if (data.firmware != "fixedwing") return;
     const auto velocities = ground_velocities(data);
     const auto windows = fit_windows(velocities);
-    if (windows.back().fit.is_usable()) return set_estimate(windows, data);
-    data.airspeed_m_per_s.not_chosen.push_back(windows.back().fit.unknown);
+    auto& airspeed = data.airspeed_m_per_s;
+    if (const auto& fit = windows.back().fit; !fit.is_usable()) {
+        if (airspeed.empty()) airspeed.not_chosen.push_back(fit.unknown);
+        return;
+    }
+    auto estimate = estimate_of(windows);
+    if (!airspeed.empty()) {
+        auto reason = disproof(airspeed, windows, estimate);
+        if (reason.empty()) return;
+        airspeed = {{}, {}, {std::move(reason)}};
+        data.wind_east_m_per_s = data.wind_north_m_per_s = {};  // autopilots derive theirs from the sensor
+    }
+    set_estimate(windows, std::move(estimate), data);
 }
 
 }  // namespace flightwatt::flight

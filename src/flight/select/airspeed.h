@@ -2,7 +2,7 @@
 
 #include "flight/flight_data.h"
 
-/// The airspeed of a wing without a sensor, from its velocity over ground.
+/// The airspeed of a wing without a sensor, or with a wrong one, from its velocity over ground.
 ///
 /// In a steady wind w the velocities v over ground are on a circle about w, where the airspeed is equal on all headings.
 /// The circle with the least (robust) variance of |v - w| gives the wind, and |v - w| the airspeed of each moment.
@@ -13,8 +13,9 @@
 /// the airspeed is added to the error for that, and gusts (constants in airspeed.cpp).
 namespace flightwatt::flight {
 
-/// Estimates the airspeed of a wing that has none, and its wind where the log has none: of parts of the flight of ten
-/// minutes or more. Sets airspeed_estimate, or the reason against it in the airspeed's `not_chosen`.
+/// Estimates the airspeed of a wing that has none, or whose sensor the ground velocity disproves, and its wind where the
+/// log has none: of parts of the flight of ten minutes or more. Sets airspeed_estimate; the airspeed's `not_chosen` has
+/// the reason against the estimate, or with one that against the sensor.
 void estimate_airspeed(FlightData& data);
 
 }  // namespace flightwatt::flight

@@ -5,6 +5,7 @@
 #include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -122,6 +123,49 @@ TEST(EstimatedAirspeed, IsOfWingsWithoutASensorAlone) {
     EXPECT_TRUE(select_tracks(series).airspeed_is_measured());
     series.tracks.back().value = {12.0, 12.0};  // no sensor
     EXPECT_TRUE(select_tracks(series).airspeed_estimate);
+}
+
+/// The wing with a sensor that reads a multiple of its airspeed, and the wind that its autopilot derives from it.
+FlightSeries with_sensor(double multiple, const Wing& wing = {}) {
+    auto series = series_of(wing);
+    for (const auto* name : {"airspeed_m_per_s", "wind_east_m_per_s"}) {
+        series.tracks.push_back({.name = name, .source = "ARSP.Airspeed"});
+        for (double t = 0.0; t <= wing.duration_s + 120.0; t += 1.0) {
+            series.tracks.back().time_s.push_back(t);
+            series.tracks.back().value.push_back(12.0 * multiple + 0.2 * std::sin(t));
+        }
+    }
+    return series;
+}
+
+TEST(EstimatedAirspeed, ReplacesASensorThatTheGroundVelocityDisproves) {
+    const auto wrong = select_tracks(with_sensor(1.5));
+    ASSERT_TRUE(wrong.airspeed_estimate);
+    EXPECT_FALSE(wrong.airspeed_is_measured());
+    EXPECT_NEAR(value_at(wrong.airspeed_m_per_s, 333.0), 12.0, 0.05);
+    EXPECT_NEAR(value_at(wrong.wind_east_m_per_s, 333.0), 4.0, 0.02) << "not the wind of the sensor";
+    const auto found = selection_diagnostics(wrong);
+    const auto warned = std::ranges::find(found, "wrong airspeed sensor", &Diagnostic::kind);
+    ASSERT_NE(warned, found.end());
+    EXPECT_EQ(warned->severity, Severity::warning);
+    EXPECT_THAT(texts_of({*warned}),
+                Contains(HasSubstr("the sensor (ARSP.Airspeed) reads 18.0 m/s on average where the "
+                                   "velocity over ground on all headings shows 12.0 m/s")));
+    const auto is_used = [](double multiple) { return select_tracks(with_sensor(multiple)).airspeed_is_measured(); };
+    EXPECT_TRUE(is_used(0.76));
+    EXPECT_FALSE(is_used(0.74));
+    EXPECT_TRUE(is_used(1.24));
+    EXPECT_FALSE(is_used(1.26));
+}
+
+TEST(EstimatedAirspeed, DisprovesNoSensorWithoutHeadingsOrAWing) {
+    const auto to_and_fro = [](double t) { return bearing_of_leg(t, {70.0, 250.0}); };
+    const auto unseen = select_tracks(with_sensor(1.5, {.heading_deg = to_and_fro}));
+    EXPECT_TRUE(unseen.airspeed_is_measured());
+    EXPECT_TRUE(unseen.airspeed_m_per_s.not_chosen.empty());
+    auto series = with_sensor(1.5);
+    series.firmware = "rotorcraft";
+    EXPECT_TRUE(select_tracks(series).airspeed_is_measured());
 }
 
 TEST(EstimatedAirspeed, FollowsAWindThatChanges) {
