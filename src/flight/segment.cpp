@@ -51,10 +51,16 @@ PhaseEdge describe_edge(const FlightData& data, const ResampledFlight& grid, dou
     return edge;
 }
 
+SortieEdges edges_of(const FlightCandidate& flown) {
+    const auto& [data, grid, activity, heights, options] = flown;
+    if (is_cruise_alone(flown)) return {};
+    return grid.hovers.empty() ? find_edges(grid, activity, heights, options)
+                               : find_hover_edges(grid, activity, heights);
+}
+
 Sortie make_sortie(const FlightCandidate& flown) {
     const auto& grid = flown.grid;
-    auto edges = grid.hovers.empty() ? find_edges(grid, flown.activity, flown.heights, flown.options)
-                                     : find_hover_edges(grid, flown.activity, flown.heights);
+    auto edges = edges_of(flown);
     if (edges.lift_off_s) edges.lift_off_s = confirmed_by_detector(grid.detector, *edges.lift_off_s, false);
     if (edges.touchdown_s) edges.touchdown_s = confirmed_by_detector(grid.detector, *edges.touchdown_s, true);
     const double first_s = edges.lift_off_s.value_or(grid.time_s(flown.activity.span.begin));

@@ -34,6 +34,8 @@ constexpr double standing_extent_m = 30.0;
 constexpr double min_airspeed_m_per_s = 7.0;
 constexpr double climb_window_s = 20.0;
 constexpr double climbed_by_motor_m = 15.0;
+constexpr double min_cruise_s = 60.0;    // of a log without ground, at flying speed
+constexpr std::size_t min_reports = 10;  // of a land detector that reports all the time, not only changes
 constexpr std::size_t min_changes = 10;  // of values: a receiver without a fix repeats its last one
 
 std::vector<double> sorted(std::span<const double> values) {
@@ -44,6 +46,9 @@ std::vector<double> sorted(std::span<const double> values) {
 
 /// The speed that is exceeded for a tenth of the time.
 double fast_speed(std::span<const double> speeds) { return quantile(sorted(speeds), 0.9); }
+
+/// The value that is exceeded for nine tenths of the time.
+double usual_least(std::span<const double> values) { return quantile(sorted(values), 0.1); }
 
 /// Range from the 5th to the 95th percentile.
 double spread_of(std::span<const double> values) {
@@ -116,7 +121,7 @@ std::string has_no_altitude(const FlightCandidate& c) {
 }
 
 std::string stays_low(const FlightCandidate& c) {
-    if (c.heights.max_m >= c.options.flight_height_m || flies_by_motion(c)) return "";
+    if (c.heights.max_m >= c.options.flight_height_m || flies_by_motion(c) || is_cruise_alone(c)) return "";
     const double height_m = std::max(c.heights.max_m, 0.0);
     const double motor_percent = c.max_motor_percent();
     const bool by_power = c.grid.motor_indicator == MotorIndicator::power;
@@ -141,8 +146,12 @@ std::string stays_on_ground(const FlightCandidate& c) {
     if (!detector.empty() && state_at(detector, start_s) == 1.0 &&
         !changes_to(detector, 0.0, start_s, c.grid.time_s(moving.end - 1)))
         return "run-up: the autopilot states that it is on the ground";
+    const bool is_stated_aloft = !c.activity.begins_at_rest() && !c.activity.ends_at_rest() &&
+                                 detector.value.size() >= min_reports &&
+                                 std::ranges::count(detector.value, 0.0) == std::ssize(detector.value);
     const auto [low_m, high_m] = std::ranges::minmax(part_of(c.grid.altitude_m, moving));
-    if (c.max_motor_percent() >= c.options.flight_throttle_percent && high_m - low_m >= min_hover_m) return "";
+    const bool leaves_ground = is_stated_aloft || high_m - low_m >= min_hover_m;
+    if (c.max_motor_percent() >= c.options.flight_throttle_percent && leaves_ground) return "";
     return fmt::format("run-up: motors to {:.0f} %, altitude within {:.1f} m", c.max_motor_percent(), high_m - low_m);
 }
 
@@ -304,6 +313,15 @@ double FlightCandidate::max_motor_percent() const {
 
 bool FlightCandidate::is_motor_off() const {
     return grid.motor_indicator != MotorIndicator::unknown && max_motor_percent() < flight_motor_percent(grid, options);
+}
+
+bool is_cruise_alone(const FlightCandidate& c) {
+    const auto& [moving, span, before, after] = c.activity;
+    if (c.data.firmware != "fixedwing" || c.activity.begins_at_rest() || c.activity.ends_at_rest()) return false;
+    if (c.grid.motor_percent.empty() || c.grid.ground_speed_m_per_s.empty()) return false;
+    return c.heights.max_m < c.options.flight_height_m && moving.size() >= c.grid.steps(min_cruise_s) &&
+           usual_least(part_of(c.grid.motor_percent, moving)) >= flight_motor_percent(c.grid, c.options) &&
+           usual_least(part_of(c.grid.ground_speed_m_per_s, moving)) >= min_flight_m_per_s;
 }
 
 std::string ground_vehicle_reason(const FlightData& data) {

@@ -23,6 +23,10 @@ struct FlightCandidate {
     bool is_motor_off() const;
 };
 
+/// Returns whether a wing cruises level for a minute or more, from the beginning of its log to the end: without a rest,
+/// with the motor of a flight, at flying speed.
+bool is_cruise_alone(const FlightCandidate& candidate);
+
 /// Returns the reason why the vehicle does not fly, "a ground vehicle: it sends ROVER_STATUS"; empty if it may.
 std::string ground_vehicle_reason(const FlightData& data);
 

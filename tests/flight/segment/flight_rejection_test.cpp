@@ -101,6 +101,44 @@ TEST(FlightRejection, WhereItDrivesAtOneHeightAndTheGroundIsNotSeen) {
     EXPECT_EQ(why_none(series), "1 sorties");
 }
 
+/// A wing at one height for its whole log.
+struct LevelWing {
+    double duration_s = 62.0;
+    double speed_m_per_s = 15.0;
+    double throttle_percent = 45.0;
+    double motion_m = 4.0;
+    const char* firmware = "fixedwing";
+};
+
+FlightSeries series_of(const LevelWing& wing) {
+    auto columns = columns_of({{0, 80, 0}, {wing.duration_s, 80, 0}}, 1.0);
+    for (std::size_t i = 0; i < columns.time_s.size(); ++i) {
+        columns.throttle_percent[i] = wing.throttle_percent + 0.1 * static_cast<double>(i % 3);
+        columns.power_w[i] = 100.0 + static_cast<double>(i % 3);
+        columns.altitude_m[i] += wing.motion_m * std::sin(columns.time_s[i]);
+    }
+    columns.ground_speed_m_per_s.assign(columns.time_s.size(), wing.speed_m_per_s);
+    auto series = test::series_of(columns);
+    series.firmware = wing.firmware;
+    return series;
+}
+
+TEST(FlightRejection, IsNoneOfALogThatBeginsAndEndsInCruise) {
+    for (const double motion_m : {4.0, 0.0}) {
+        const auto phases = segment(select_tracks(series_of(LevelWing{.motion_m = motion_m})));
+        ASSERT_EQ(phases.sorties.size(), 1U);
+        ASSERT_EQ(phases.sorties[0].phases.size(), 1U);
+        EXPECT_EQ(phases.sorties[0].phases[0].phase, Phase::cruise);
+        EXPECT_FALSE(phases.sorties[0].phases[0].complete);
+        EXPECT_NEAR(phases.sorties[0].phases[0].duration_s(), 62.0, 1.0);
+    }
+    const auto taxis = HasSubstr("run-up, taxi or hop");
+    EXPECT_THAT(why_none(series_of(LevelWing{.duration_s = 57.0})), taxis);
+    EXPECT_THAT(why_none(series_of(LevelWing{.speed_m_per_s = 4.9})), taxis);
+    EXPECT_THAT(why_none(series_of(LevelWing{.throttle_percent = 19.0})), taxis);
+    EXPECT_THAT(why_none(series_of(LevelWing{.firmware = ""})), taxis);
+}
+
 TEST(FlightRejection, WhereAnAltitudeAloneIsThatOfAnEstimatorThatSettles) {
     const auto alone = [](const std::vector<test::Point>& points, double speed_m_per_s) {
         auto columns = columns_of(points);

@@ -88,6 +88,42 @@ TEST(HoverRecord, IsNoneWhileTheAutopilotStatesTheGround) {
     EXPECT_THAT(phases.ground_events.at(0).what, testing::HasSubstr("states that it is on the ground"));
 }
 
+/// Three minutes of hover within centimetres, from the log's beginning to its end.
+FlightSeries still_hover() {
+    FlightSeries series;
+    series.firmware = "rotorcraft";
+    for (const auto* name : {"altitude_m", "throttle_percent", "current_a", "power_w"}) {
+        series.tracks.push_back({.name = name, .source = name});
+        for (int i = 0; i < 900; ++i) series.tracks.back().time_s.push_back(0.2 * i);
+    }
+    for (int i = 0; i < 900; ++i) {
+        series.tracks[0].value.push_back(420.0 + 0.05 * (i % 3));
+        series.tracks[1].value.push_back(42.0 + i % 3);
+        series.tracks[2].value.push_back(16.0 + 0.1 * (i % 3));
+        series.tracks[3].value.push_back(250.0 + i % 3);
+    }
+    return series;
+}
+
+TEST(HoverRecord, IsThatOfADetectorWhichReportsTheAirThroughoutTheLog) {
+    std::vector<double> each_s(180);
+    for (std::size_t i = 0; i < each_s.size(); ++i) each_s[i] = static_cast<double>(i);
+    const auto hover_of = [&](std::size_t reports, double last) {
+        auto series = still_hover();
+        series.tracks.push_back(state("landed", {each_s.begin(), each_s.begin() + static_cast<std::ptrdiff_t>(reports)},
+                                      std::vector<double>(reports, 0.0)));
+        series.tracks.back().value.back() = last;
+        return segment(select_tracks(series));
+    };
+    const auto hover = hover_of(180, 0.0);
+    ASSERT_EQ(hover.sorties.size(), 1U);
+    EXPECT_NEAR(hover.sorties[0].end_s() - hover.sorties[0].start_s(), 180.0, 1.0);
+    EXPECT_FALSE(hover.sorties[0].phases.at(0).complete);
+    EXPECT_THAT(hover_of(180, 1.0).sorties, IsEmpty());
+    EXPECT_THAT(hover_of(9, 0.0).sorties, IsEmpty()) << "changes alone state nothing of the beginning";
+    EXPECT_THAT(segment(select_tracks(still_hover())).sorties, IsEmpty());
+}
+
 /// Heights at times, straight lines between, four samples a second; the throttle is that of a hover from lift-off to
 /// touchdown.
 FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) {
