@@ -152,8 +152,10 @@ MotorRecord motor_record(const FlightData& data, const Track& altitude_m) {
     if (!throttle.empty() && !(is_unused && levels)) {
         record.indicator = MotorIndicator::throttle;
         record.evidence = throttle.source;
+        const SegmentationOptions limits;
         const double idle_percent =
-            std::max(*std::ranges::min_element(throttle.value), 0.0) + SegmentationOptions{}.idle_throttle_percent;
+            std::min(std::max(*std::ranges::min_element(throttle.value), 0.0) + limits.idle_throttle_percent,
+                     limits.flight_throttle_percent);
         if (levels) {
             const auto glitches = remove_glitches(throttle, power, *levels, idle_percent);
             if (glitches > 0) {

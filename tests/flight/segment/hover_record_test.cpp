@@ -124,6 +124,11 @@ TEST(HoverRecord, IsThatOfADetectorWhichReportsTheAirThroughoutTheLog) {
     EXPECT_THAT(segment(select_tracks(still_hover())).sorties, IsEmpty());
 }
 
+TEST(HoverRecord, HasNoIdleThrottleWhereItsLeastIsThatOfAFlight) {
+    EXPECT_EQ(segment(select_tracks(still_hover())).motor_source, "throttle_percent");
+    EXPECT_THAT(segment(select_tracks(still_hover())).warnings, IsEmpty());
+}
+
 /// Heights at times, straight lines between, four samples a second; the throttle is that of a hover from lift-off to
 /// touchdown.
 FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) {
