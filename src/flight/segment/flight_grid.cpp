@@ -60,6 +60,17 @@ std::vector<bool> gliding_points(const ResampledFlight& grid, double idle_percen
     return gliding;
 }
 
+/// The time of the last sample of power, without power of altitude. After a slow power, the altitude of one interval
+/// counts too: there is the touchdown in a log that ends when the motors are disarmed.
+double segmented_until_s(const FlightData& data) {
+    const auto& altitude_s = data.altitude_m.time_s;
+    const auto& power_s = data.power_w.time_s;
+    if (power_s.empty()) return altitude_s.back();
+    const double interval_s = median_interval_s(power_s);
+    if (interval_s <= slow_power_s) return power_s.back();
+    return std::clamp(altitude_s.back(), power_s.back(), power_s.back() + interval_s);
+}
+
 /// Number of points of the grid. Throws InputError for an implausible duration.
 std::size_t size_until(const FlightData& data, const ResampledFlight& grid, double end_s) {
     const double span_s = end_s - grid.start_s;
@@ -145,13 +156,10 @@ std::vector<double> ResampledFlight::times_s(IndexSpan span) const {
 }
 
 ResampledFlight make_grid(const FlightData& data) {
-    const auto& logged = data.altitude_m;
-    require_altitude(data, logged);
+    require_altitude(data, data.altitude_m);
     ResampledFlight grid;
-    const auto& power = data.power_w;
-    const auto& clock = power.empty() ? logged : power;
-    grid.start_s = clock.time_s.front();
-    const auto time_s = grid.times_s({0, size_until(data, grid, clock.time_s.back())});
+    grid.start_s = (data.power_w.empty() ? data.altitude_m : data.power_w).time_s.front();
+    const auto time_s = grid.times_s({0, size_until(data, grid, segmented_until_s(data))});
     auto altitude = clean_altitude(altitude_with_fix(data));  // on its own clock
     grid.unusable = std::move(altitude.unusable_reason);
     grid.warnings = std::move(altitude.warnings);

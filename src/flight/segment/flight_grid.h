@@ -47,8 +47,9 @@ inline constexpr double long_gap_s = 10.0;
 /// without samples.
 double interval_around_s(const std::vector<double>& sample_s, double time_s);
 
-/// Resamples the altitude, motor and speed over the time of the power samples, or without power of the altitude. A
-/// receiver's altitude without a fix is not used. Throws InputError if the flight has no altitude.
+/// Resamples the altitude, motor and speed over the time of the power samples, up to one interval after those of a slow
+/// power, or without power of the altitude. A receiver's altitude without a fix is not used. Throws InputError if the
+/// flight has no altitude.
 ResampledFlight make_grid(const FlightData& data);
 
 /// Finds the spans in which the aircraft is at rest: see SegmentationOptions. If motor and speed are known, the

@@ -76,7 +76,19 @@ MotorRecord record_of_motor_speed(const FlightData& data) {
     return record;
 }
 
-/// The throttle on the clock of the power samples, or without power on its own.
+/// The power, if it is slow on the clock of a throttle that is not, linear between its samples.
+Track power_of(const FlightData& data) {
+    Track power = data.power_w;
+    const auto& throttle_s = data.throttle_percent.time_s;
+    if (!(median_interval_s(power.time_s) > slow_power_s) || throttle_s.empty() ||
+        median_interval_s(throttle_s) > slow_power_s)
+        return power;
+    power.value = resample(power, throttle_s);
+    power.time_s = throttle_s;
+    return power;
+}
+
+/// The throttle on the clock of the power, or without power on its own.
 Track throttle_of(const FlightData& data, const Track& power) {
     Track throttle = data.throttle_percent;
     if (throttle.empty() || power.empty()) return throttle;
@@ -145,7 +157,7 @@ double usual_effort(std::vector<double> values) {
 
 MotorRecord motor_record(const FlightData& data, const Track& altitude_m) {
     MotorRecord record;
-    const auto& power = data.power_w;
+    const auto power = power_of(data);
     auto throttle = throttle_of(data, power);
     const auto levels = altitude_m.empty() ? std::nullopt : power_levels(data, altitude_m);
     const bool is_unused = is_constant(throttle);  // as of an autopilot without a throttle

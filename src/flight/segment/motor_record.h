@@ -25,6 +25,9 @@ inline constexpr double min_lifting_a = 5.0;
 /// Minimum of the full speed of a motor that can propel an aircraft.
 inline constexpr double min_running_rpm = 500.0;
 
+/// Interval between samples of a power that is too slow for lift-off and touchdown [s]: it lasts as long as a climb.
+inline constexpr double slow_power_s = 2.0;
+
 /// Motor effort: the throttle; without one the power from idle (0) to running (100), else the motor's speed in percent
 /// of its full speed (the 98th percentile of the log). A VTOL has two kinds of motors: the larger of throttle and power.
 struct MotorRecord {

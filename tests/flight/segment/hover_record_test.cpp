@@ -130,8 +130,8 @@ TEST(HoverRecord, HasNoIdleThrottleWhereItsLeastIsThatOfAFlight) {
 }
 
 /// Heights at times, straight lines between, four samples a second; the throttle is that of a hover from lift-off to
-/// touchdown.
-FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) {
+/// touchdown, the power, if any, is sampled at an interval.
+FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s, double power_interval_s = 0.0) {
     FlightSeries series;
     series.firmware = "rotorcraft";
     Track throttle{.name = "throttle_percent", .source = "CTUN.ThO"};
@@ -142,6 +142,14 @@ FlightPhases flown(const Track& heights, double lift_off_s, double touchdown_s) 
         throttle.value.push_back(time_s >= lift_off_s && time_s <= touchdown_s ? 50.0 + std::fmod(time_s, 1.0) : 20.0);
     }
     series.tracks = {altitude, throttle, state("armed", {0.0}, {1.0})};
+    if (power_interval_s > 0.0) {
+        Track power{.name = "power_w", .source = "BAT.Volt * BAT.Curr"};
+        for (double time_s = altitude.time_s.front(); time_s <= altitude.time_s.back(); time_s += power_interval_s) {
+            power.time_s.push_back(time_s);
+            power.value.push_back(value_at(throttle, time_s) > 30.0 ? 250.0 + std::fmod(time_s, 3.0) : 25.0);
+        }
+        series.tracks.push_back(power);
+    }
     return segment(select_tracks(series));
 }
 
@@ -163,6 +171,15 @@ TEST(HoverEdges, OfTakeoffAndLandingAreThoseOfFirstClimbAndLastDescent) {
     expect_edges(flown(to_a_roof, 20, 100), {20, 30, 90, 100});
     const Track up_and_down{.time_s = {0, 20, 30, 40, 60}, .value = {0, 0, 20, 0, 0}};
     expect_edges(flown(up_and_down, 20, 40), {20, 30, 40});
+}
+
+TEST(HoverEdges, AreThoseOfTheThrottleWherePowerIsSlow) {
+    // The log ends, as at disarming, before the next sample of power.
+    const Track flight{.time_s = {0, 15, 25, 175, 194, 198}, .value = {0, 0, 20, 20, 0, 0}};
+    for (const double interval_s : {1.0, 5.0, 10.0, 15.0}) {
+        SCOPED_TRACE(interval_s);
+        expect_edges(flown(flight, 15, 194, interval_s), {15, 25, 175, 194});
+    }
 }
 
 TEST(HoverEdges, AreAbsentWhereTheLogBeginsOrEndsInTheAir) {
