@@ -157,6 +157,7 @@ constexpr PowerRule rules[] = {
      .fault_above = 0.10},
     {.kind = "gaps in the altitude", .findings = altitude_gaps, .warn_above = 0.06},
     {.kind = "gaps in the power", .findings = power_gaps, .warn_above = 1.0},
+    {.kind = "slow power", .findings = slow_samples, .warn_above = 0.05},
     {.kind = "power without throttle",
      .text = "power rises or falls for up to 5 samples without the throttle, in {samples} samples in flight: "
              "{percent:.0f} % of the energy",

@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 #include "flight/power_report.h"
+#include "flight/segment/motor_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,35 @@ Findings phase_difference(const PowerRecord& record) {
             findings.push_back(
                 {difference_wh / limit_wh, fmt::format("{} at {:.0f} s: {:.3f} Wh were measured and {:.3f} Wh counted",
                                                        phase_word(span.phase), span.start.time_s, measured, count_wh)});
+        }
+    }
+    return findings;
+}
+
+/// A change of the power at any time between two samples, of which a straight line is assumed, is one of a uniform
+/// distribution.
+Findings slow_samples(const PowerRecord& record) {
+    Findings findings;
+    const auto& time_s = record.time_s;
+    const double interval_s = median_interval_s(time_s);
+    if (!(interval_s > slow_power_s)) return findings;
+    for (const auto& sortie : record.sorties) {
+        for (const auto& span : sortie.phases) {
+            constexpr double uniform_variance = 1.0 / 12.0;
+            double variance = 0.0;
+            for (std::size_t i = 1; i < time_s.size(); ++i) {
+                if (time_s[i] <= span.start.time_s || time_s[i - 1] >= span.end.time_s) continue;
+                const double energy_j = (record.power_w[i] - record.power_w[i - 1]) * (time_s[i] - time_s[i - 1]);
+                variance += uniform_variance * energy_j * energy_j;
+            }
+            const double energy_wh = measured_wh(record, span.start.time_s, span.end.time_s);
+            const double sd_wh = units::wh_from_joule(std::sqrt(variance));
+            findings.push_back(
+                {energy_wh > 0.0 ? sd_wh / energy_wh : 0.0,
+                 fmt::format(
+                     "the power is measured every {:.2g} s: the {:.3f} Wh of the {} at {:.0f} s are known within "
+                     "{:.3f} Wh (1 sd)",
+                     interval_s, energy_wh, phase_word(span.phase), span.start.time_s, sd_wh)});
         }
     }
     return findings;

@@ -28,6 +28,9 @@ Findings counter_difference(const PowerRecord& record);
 /// Finds phases whose energy differs from the counter by 2 % of that of the flight, relative to their limit.
 Findings phase_difference(const PowerRecord& record);
 
+/// Finds the standard deviation of each phase's energy between the samples of a slow power, relative to the energy.
+Findings slow_samples(const PowerRecord& record);
+
 /// Finds the difference of the currents at rest before and after each sortie, over the mean in flight.
 Findings rest_current_drift(const PowerRecord& record);
 

@@ -52,6 +52,23 @@ TEST(PowerRules, OfALoadAtRest) {
     EXPECT_THAT(loaded(9, 5.1, 20), IsEmpty());
 }
 
+TEST(PowerRules, OfSamplesTooFarApartForAPhase) {
+    const auto each = [](double interval_s) {
+        auto record = sound_record(100);
+        for (auto& time_s : record.time_s) time_s *= interval_s;
+        record.energy_j *= interval_s;
+        record.duration_s *= interval_s;
+        record.sorties = {sortie_of(record, 2.0 * interval_s)};
+        record.sorties[0].phases[0].start.time_s -= 0.5 * interval_s;
+        return found_in(std::move(record)).warnings;
+    };
+    EXPECT_THAT(each(10.0),
+                testing::ElementsAre("the power is measured every 10 s: the 0.132 Wh of the take-off at 995 s "
+                                     "are known within 0.016 Wh (1 sd)"));
+    EXPECT_THAT(each(2.1), testing::SizeIs(1));
+    EXPECT_THAT(each(2.0), IsEmpty());
+}
+
 TEST(PowerRules, OfPowerThatStandsStill) {
     const auto stands = [](std::size_t count, std::size_t flown = 1000) {
         return found(
