@@ -9,6 +9,7 @@
 #include "flight/select/power.h"
 #include "flight/select/supply.h"
 #include "flight/select/throttle.h"
+#include "flight/select/voltage_dropouts.h"
 
 #include <algorithm>
 #include <iterator>
@@ -154,13 +155,16 @@ constexpr ChosenTrack FlightData::*with_own_rule[] = {&FlightData::power_w,
 
 }  // namespace
 
-FlightData select_tracks(const FlightSeries& series) {
+FlightData select_tracks(const FlightSeries& logged) {
+    auto without = without_voltage_dropouts(logged);
+    const auto& series = without.series ? *without.series : logged;
     FlightData data;
     // Clock, identity and kind of vehicle are the log's.
     static_cast<FlightInfo&>(data) = series;
     data.last_s = last_time_s(series);
     // Monitors to packs, packs to circuits; power, voltage, current and counters.
     choose_electrical(series, data);
+    prepend(data.power_w.notes, std::move(without.warnings));
     data.throttle_percent = select_throttle(series, data.power_w);
     // Altitude, position, speed, wind and states.
     for (const auto& [name, member] : track_members())
