@@ -12,8 +12,9 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double powerless_fraction = 0.05;   // of the upper quartile of the power with an open throttle
-constexpr std::size_t min_step_samples = 10;  // of a step of throttle
+constexpr double powerless_fraction = 0.05;    // of the upper quartile of the power with an open throttle
+constexpr double powerless_of_largest = 0.01;  // power rises at most with the cube of the throttle: 2.7 % at 30 %
+constexpr std::size_t min_step_samples = 10;   // of a step of throttle
 
 /// The decimal place to which a counter is rounded, from 1 down to a millionth: the first of which all values are
 /// multiples.
@@ -138,7 +139,9 @@ void add_sums(PowerRecord& record) {
         record.max_v = std::ranges::max(voltages_v);
     }
     std::ranges::sort(running_w);
-    if (!running_w.empty()) record.powerless_w = powerless_fraction * quantile(running_w, 0.75);
+    if (!running_w.empty())
+        record.powerless_w =
+            std::max(powerless_fraction * quantile(running_w, 0.75), powerless_of_largest * running_w.back());
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ constexpr double same_throttle_percent = 2.0;
 constexpr double max_pack_v = 60.0;        // 14 LiPo cells
 constexpr double min_pack_v = 2.5;         // one cell, empty
 constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
+constexpr double max_dead_part = 0.5;      // of the samples with an open throttle: with more the energy is not measured
+constexpr double min_dead_s = 30.0;        // the throttle of a motor that is not armed may be open for less
 constexpr double min_mean_power_w = 3.0;
 constexpr double max_mean_power_w = 20e3;  // of some 100 kg in the air
 
@@ -36,6 +38,12 @@ using Test = bool (*)(const PowerRecord&, std::size_t);
 
 constexpr Test always = [](const PowerRecord&, std::size_t) { return true; };
 constexpr Test in_flight = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i); };
+constexpr Test in_powered_flight = [](const PowerRecord& r, std::size_t i) {
+    return r.is_flown(i) && r.has_open_throttle(i);
+};
+constexpr Test is_powerless = [](const PowerRecord& r, std::size_t i) {
+    return std::abs(r.power_w[i]) <= r.powerless_w;
+};
 
 /// Basis of a rule's share.
 enum class Share { samples, time, energy, time_or_energy };
@@ -213,10 +221,18 @@ constexpr PowerRule rules[] = {
      .share = Share::energy,
      .warn_above = 0.02},
     {.kind = "no power in flight",
+     .text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle: its sensor does not "
+             "measure what the motor draws there",
+     .applies = in_powered_flight,
+     .holds = is_powerless,
+     .min_s = min_dead_s,
+     .fault_above = max_dead_part},
+    {.kind = "no power in flight",
      .text = "no power in {percent:.0f} % of the samples in flight with more than 30 % throttle",
-     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_flown(i) && r.has_open_throttle(i); },
-     .holds = [](const PowerRecord& r, std::size_t i) { return std::abs(r.power_w[i]) <= r.powerless_w; },
-     .warn_above = 0.15},
+     .applies = in_powered_flight,
+     .holds = is_powerless,
+     .warn_above = 0.15,
+     .unless_previous = true},
     {.kind = "power outside of flights",
      .text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: was it a long run-up, or is the altitude wrong?",

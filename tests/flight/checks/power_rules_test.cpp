@@ -157,6 +157,32 @@ TEST(PowerRules, OfAnOpenThrottleWithoutPower) {
     EXPECT_THAT(powerless(151, 1.1), Not(is_powerless));
 }
 
+TEST(PowerRules, OfASensorThatIsDeadWithAnOpenThrottle) {
+    const auto dead = [](std::size_t count, double power_w = 0.0, double throttle_percent = 50.0,
+                         std::size_t flown = 1000) {
+        return found(
+                   count,
+                   [&](PowerRecord& record, std::size_t i) {
+                       record.power_w[i] = power_w;
+                       record.throttle_percent[i] = throttle_percent;
+                   },
+                   flown)
+            .power_faults;
+    };
+    EXPECT_THAT(dead(501),
+                Contains("no power in 50 % of the samples in flight with more than 30 % throttle: its sensor "
+                         "does not measure what the motor draws there"));
+    EXPECT_THAT(dead(500), IsEmpty());
+    EXPECT_THAT(dead(900, 0.19), testing::SizeIs(1)) << "1 % of the largest power is the sensor's noise";
+    EXPECT_THAT(dead(900, 0.22), IsEmpty());
+    EXPECT_THAT(dead(900, 0.0, 10.0), IsEmpty()) << "it glides";
+    EXPECT_THAT(dead(32, 0.0, 50.0, 150), IsEmpty());
+    auto launched = sound_record();
+    for (std::size_t i = 120; i < last; ++i) launched.power_w[i] = launched.throttle_percent[i] = 0.0;
+    for (std::size_t i = 200; i < 228; ++i) launched.throttle_percent[i] = 60.0;
+    EXPECT_THAT(found_in(std::move(launched)).power_faults, IsEmpty()) << "28 s of an open throttle";
+}
+
 TEST(PowerRules, OfPowerOutsideOfTheFlight) {
     const auto outside = [](std::size_t count, double power_w = 22.0) {
         auto record = sound_record();
