@@ -15,13 +15,13 @@ namespace {
 constexpr double min_gap_s = 60.0;
 
 /// The increase of a counter in a gap; 0 without one, or where it restarted or does not count.
-double counted_in(const Track& counter, const LinkGap& gap) {
+double counted_in(const Track& counter, const TimeInterval& gap) {
     if (counter.empty()) return 0.0;
     return std::max(0.0, value_at(counter, gap.end_s) - value_at(counter, gap.start_s));
 }
 
 /// The charge counter is of the first circuit only.
-double counted_energy_wh(const FlightData& data, const LinkGap& gap) {
+double counted_energy_wh(const FlightData& data, const TimeInterval& gap) {
     const double energy_wh = counted_in(data.energy_wh, gap);
     if (energy_wh > 0.0 || data.voltage_v.empty() || data.circuits.size() > 1) return energy_wh;
     return counted_in(data.charge_ah, gap) * 0.5 *
@@ -30,7 +30,7 @@ double counted_energy_wh(const FlightData& data, const LinkGap& gap) {
 
 /// Inserts samples that are never as far apart as a gap: the straight line across it, times a factor that gives it this
 /// integral.
-void fill(Track& track, const LinkGap& gap, double integral) {
+void fill(Track& track, const TimeInterval& gap, double integral) {
     const double line = integrated(track.time_s, track.value, gap.start_s, gap.end_s);
     const auto count = static_cast<std::size_t>(std::ceil(gap.duration_s() / gap_threshold_s(track.time_s)));
     std::vector<double> times_s;
@@ -56,20 +56,21 @@ std::string describe(const LinkGap& gap) {
 
 }  // namespace
 
+bool bridge_gap(FlightData& data, const TimeInterval& gap) {
+    const double energy_wh = counted_energy_wh(data, gap);
+    if (!(energy_wh > 0.0)) return false;
+    const double charge_ah = counted_in(data.charge_ah, gap);
+    fill(data.power_w, gap, units::joule_from_wh(energy_wh));
+    if (charge_ah > 0.0 && !data.current_a.empty()) fill(data.current_a, gap, units::coulomb_from_ah(charge_ah));
+    return true;
+}
+
 std::vector<LinkGap> bridge_link_gaps(FlightData& data) {
     std::vector<LinkGap> gaps;
-    auto& power = data.power_w;
+    const auto& power = data.power_w;
     for (std::size_t i = 1; i < power.time_s.size(); ++i)
         if (power.time_s[i] - power.time_s[i - 1] > min_gap_s) gaps.push_back({{power.time_s[i - 1], power.time_s[i]}});
-    if (gaps.empty()) return gaps;
-    for (auto& gap : gaps) {
-        const double energy_wh = counted_energy_wh(data, gap);
-        gap.is_counted = energy_wh > 0.0;
-        if (!gap.is_counted) continue;
-        const double charge_ah = counted_in(data.charge_ah, gap);
-        fill(power, gap, units::joule_from_wh(energy_wh));
-        if (charge_ah > 0.0 && !data.current_a.empty()) fill(data.current_a, gap, units::coulomb_from_ah(charge_ah));
-    }
+    for (auto& gap : gaps) gap.is_counted = bridge_gap(data, gap);
     return gaps;
 }
 

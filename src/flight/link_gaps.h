@@ -16,9 +16,12 @@ struct LinkGap : TimeInterval {
     bool is_counted = false;  ///< its energy was taken from an on-board counter
 };
 
-/// Fills each gap of the power of more than a minute with samples, and the current likewise, and returns these gaps.
-/// The energy is that of the on-board counter, else that of the charge counter at the mean of the voltages around the
-/// gap. A gap without such a counter, or whose counter ran back or did not count, is left unchanged.
+/// Fills a gap of the power with samples, and the current likewise. The energy is that of the on-board counter, else
+/// that of the charge counter at the mean of the voltages around the gap. Returns false, and leaves it unchanged,
+/// without such a counter, and if it ran back or did not count.
+bool bridge_gap(FlightData& data, const TimeInterval& gap);
+
+/// Fills each gap of the power of more than a minute as bridge_gap(), and returns these gaps.
 std::vector<LinkGap> bridge_link_gaps(FlightData& data);
 
 /// Returns whether a counter restarts between two times, as with its autopilot: it falls to less than a tenth, and

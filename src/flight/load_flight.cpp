@@ -221,6 +221,8 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
         if (options.bridges_link_gaps) bridge_link_gaps(data);
         loaded.diagnostics = all_diagnostics(data, loaded.phases, assessment);
     }
+    if (const auto jump = clock_jump_fault(data, loaded.phases, loaded.power))
+        bridge_gap(data, {jump->start_s, jump->start_s + jump->duration_s});
     append(loaded.diagnostics, Severity::warning, "link lost", data.flight, gap_warnings(gaps, loaded.phases.sorties));
     loaded.exclusion = exclusion_of(data, assessment, options);
     if (loaded.exclusion.empty()) loaded.exclusion = unknown_energy_reason(gaps, loaded.phases.sorties);

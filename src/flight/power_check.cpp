@@ -2,6 +2,7 @@
 
 #include "flight/checks/power_record.h"
 #include "flight/checks/power_rules.h"
+#include "flight/checks/unusual_rules.h"
 #include "flight/select.h"
 
 #include <algorithm>
@@ -23,6 +24,19 @@ PowerReport check_power_record(const FlightData& data, const FlightPhases& phase
     std::ranges::copy_if(record.gaps, std::back_inserter(report.gaps), &SampleGap::is_within);
     apply_power_rules(record, report);
     return report;
+}
+
+std::optional<SampleGap> clock_jump_fault(const FlightData& data, const FlightPhases& phases,
+                                          const PowerReport& report) {
+    const auto is_fault = [](const std::optional<double>& closure_percent) {
+        return closure_percent && *closure_percent > max_counter_difference_percent;
+    };
+    if (!is_fault(report.energy_closure_percent) && !is_fault(report.charge_closure_percent)) return std::nullopt;
+    const auto record = make_power_record(data, phases, {});
+    for (const auto* counter : record.counters())
+        if (const auto jump = find_clock_jump(record, *counter); jump && is_fault(counter->closure_percent))
+            return jump->gap;
+    return std::nullopt;
 }
 
 std::string describe_power_faults(const std::vector<std::string>& power_faults) {

@@ -15,6 +15,11 @@ namespace flightwatt::flight {
 PowerReport check_power_record(const FlightData& data, const FlightPhases& phases,
                                const SegmentationOptions& options = {});
 
+/// Returns the gap of a report with an integral that is a fault by its counter, if a jump of the clock there explains
+/// it; std::nullopt without one.
+std::optional<SampleGap> clock_jump_fault(const FlightData& data, const FlightPhases& phases,
+                                          const PowerReport& report);
+
 /// Returns the faults as the reason why a flight is excluded, with how to override this.
 std::string describe_power_faults(const std::vector<std::string>& power_faults);
 

@@ -20,6 +20,7 @@ constexpr double max_phase_of_flight = 0.02;  // and of the flight's
 constexpr double large_gap_fraction = 0.02;   // links are interrupted for seconds all the time
 constexpr double max_large_gaps_fraction = 0.04;
 constexpr double max_gaps_fraction = 0.05;  // all gaps together, beyond usual intervals
+constexpr double explained_percent = 3.0;   // difference from a counter that is usual
 constexpr std::size_t powerless_samples = 3;
 constexpr double idle_fraction = 0.1;  // of the upper quartile in flight
 
@@ -89,14 +90,39 @@ Findings counter_return(const PowerRecord& record) {
     return findings;
 }
 
+std::optional<ClockJump> find_clock_jump(const PowerRecord& record, const OnBoardCounter& counter) {
+    const auto& rate = &counter == &record.energy_wh ? record.power_w : record.current_a;
+    if (!counter.closure_percent || counter.value.empty() || rate.empty()) return std::nullopt;
+    double counted = 0.0;  // in flight
+    for (const auto& sortie : record.sorties)
+        counted += counter_change(record, counter, sortie.start_s(), sortie.end_s());
+    SampleGap longest;
+    double largest_excess = 0.0;
+    for (const auto& gap : record.gaps) {
+        const double end_s = gap.start_s + gap.duration_s;
+        const double integral = integrated(record.time_s, rate, gap.start_s, end_s) / units::seconds_per_hour;
+        const double excess = integral - counter_change(record, counter, gap.start_s, end_s);
+        if (!gap.is_within || excess <= largest_excess) continue;
+        longest = gap;
+        largest_excess = excess;
+    }
+    const double percent = *counter.closure_percent - units::percentage(largest_excess, counted);
+    const bool is_explained = std::abs(percent) <= explained_percent + counter.rounding_percent;
+    return largest_excess > 0.0 && is_explained ? std::optional(ClockJump{longest, percent}) : std::nullopt;
+}
+
 Findings counter_difference(const PowerRecord& record) {
     Findings findings;
     for (const auto* counter : record.counters()) {
         if (!counter->closure_percent) continue;
-        findings.push_back(
-            {std::abs(*counter->closure_percent) - counter->rounding_percent,
-             fmt::format("the measured integral in flight is {:+.1f} % away from the on-board {} counter",
-                         *counter->closure_percent, counter->name)});
+        auto text = fmt::format("the measured integral in flight is {:+.1f} % away from the on-board {} counter",
+                                *counter->closure_percent, counter->name);
+        if (const auto jump = find_clock_jump(record, *counter))
+            text = fmt::format(
+                "the clock jumps by {:.0f} s at {:.1f} s, or {:.0f} s were lost: {}, without this gap "
+                "{:+.1f} %",
+                jump->gap.duration_s, jump->gap.start_s, jump->gap.duration_s, text, jump->closure_percent);
+        findings.push_back({std::abs(*counter->closure_percent) - counter->rounding_percent, std::move(text)});
     }
     return findings;
 }

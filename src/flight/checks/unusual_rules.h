@@ -2,6 +2,7 @@
 
 #include "flight/checks/power_record.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,16 @@ Findings product_difference(const PowerRecord& record);
 
 /// Finds, for each counter, the sum of its falls in flight over that of its rises.
 Findings counter_return(const PowerRecord& record);
+
+/// A gap in flight whose excess of the integral over a counter explains why these differ.
+struct ClockJump {
+    SampleGap gap;
+    double closure_percent = 0.0;  ///< integral over counter without the excess, less 100 %
+};
+
+/// Returns the jump of the clock that explains why an integral is more than its counter, by more than usual gaps do;
+/// std::nullopt without one.
+std::optional<ClockJump> find_clock_jump(const PowerRecord& record, const OnBoardCounter& counter);
 
 /// Finds the difference of each integral in flight from its counter, beyond rounding [%].
 Findings counter_difference(const PowerRecord& record);

@@ -84,6 +84,22 @@ TEST(PowerWarnings, TellOfGapsThatCarryEnergy) {
     }
 }
 
+TEST(PowerWarnings, NameAClockThatJumpsWhereACounterShowsIt) {
+    for (const double jump_s : {40.0, 600.0, 3600.0}) {
+        const auto loaded = test::examined(test::damaged_sample([&](test::Words& words) {
+            if (const double time_s = number_or_nan(words[0]); time_s > 300.0)
+                words[0] = fmt::format("{:.3f}", time_s + jump_s);
+        }));
+        EXPECT_THAT(test::said_of(loaded), HasSubstr("the clock jumps by "));
+        const bool is_fault = !loaded.power.power_faults.empty();
+        EXPECT_EQ(is_fault, jump_s > 40.0);
+        const double far = is_fault ? 0.02 : 0.1;  // else the gap's straight line is left
+        EXPECT_NEAR(test::energy_in_flight_wh(loaded), sound_energy_wh(), far * sound_energy_wh());
+    }
+    const auto scaled = with_energy(true, [](test::Words& words, int) { scale(words, energy, 0.8); });
+    EXPECT_THAT(test::said_of(scaled), testing::Not(HasSubstr("the clock jumps by "))) << "the counter is too low";
+}
+
 TEST(PowerWarnings, TellOfAnOffsetThatTheCountersShare) {
     for (const double offset_a : {0.4, 4.9}) {
         const auto loaded = with_energy(true, [&](test::Words& words, int number) {
