@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/units.h"
+#include "flight/families/clock_steps.h"
 #include "flight/families/log_family.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/log_configuration.h"
@@ -152,9 +153,11 @@ class MappedRows {
             if (mapped->name == "power_w") require_positive(values, source_of(*mapped, columns));
             rows_.columns.push_back({mapped->name, std::nullopt, std::move(values)});
         }
+        auto steps = undo_clock_steps(rows_.time_s, rows_.places);
         telemetry::TelemetryLog log{file_, "", {}, {{"", {std::move(rows_)}}}, {}, {}, 0};
         for (auto* skipped : {&words_, &ragged_})
             if (!skipped->lines.empty()) log.skipped.push_back(std::move(*skipped));
+        if (steps) log.skipped.push_back(*std::move(steps));
         std::vector<FlightSeries> recordings;
         for (auto& recording : recordings_of(std::move(log))) recordings.push_back(series_of(std::move(recording)));
         return recordings;

@@ -133,6 +133,15 @@ TEST(MappedCsv, FindsAClockThatRunsBack) {
     EXPECT_EQ(recordings[1].tracks.at(0).value.back(), 398.0);
 }
 
+TEST(MappedCsv, KeepsTheRowsOfAClockThatIsSetBack) {
+    std::string csv = "t,h\n";
+    for (int i = 0; i < 200; ++i) csv += fmt::format("{},{}\n", i < 100 ? i : i - 5, i);
+    const auto series = read(csv, altitude);
+    EXPECT_EQ(series.tracks.at(0).time_s.size(), 200U);
+    EXPECT_EQ(series.tracks.at(0).time_s.back(), 199.0);
+    EXPECT_THAT(warnings_of(series), testing::Contains(HasSubstr("the clock is set back by 5.0 s, first at 100.0 s")));
+}
+
 TEST(MappedCsv, RefusesPowerThatIsNegativeThroughout) {
     EXPECT_EQ(
         refusal("t,u,i\n0,12,-2\n1,11,-3\n", electric),
