@@ -200,7 +200,7 @@ void name_recordings(std::vector<Candidates>& recordings) {
                 if (!track.empty()) begin_s = std::min(begin_s, track.time_s.front());
             series.flight = recording_name(series.flight, i + 1);
             series.notes.push_back(
-                fmt::format("recording {} of {} recordings in its file, whose clock restarts at {:.1f} s", i + 1,
+                fmt::format("recording {} of {} recordings in its file, from {:.1f} s of its clock on", i + 1,
                             recordings.size(), begin_s));
         }
     }

@@ -69,8 +69,7 @@ TEST_F(Recordings, OfADataFileAreThoseOfItsParts) {
     EXPECT_EQ(recordings[1].at(0).flight, "two@2");
     EXPECT_TRUE(comparable(recordings[0].at(0)) == comparable(read_flight(test::sample(1))));
     EXPECT_TRUE(comparable(recordings[1].at(0)).tracks == read_flight(test::sample(2)).tracks);
-    EXPECT_THAT(recordings[1].at(0).notes,
-                ElementsAre(HasSubstr("recording 2 of 2 recordings in its file, whose clock restarts at ")));
+    EXPECT_THAT(recordings[1].at(0).notes, ElementsAre(HasSubstr("recording 2 of 2 recordings in its file, from ")));
     EXPECT_TRUE(recordings[0].at(0).notes.empty()) << "nothing of later";
 }
 

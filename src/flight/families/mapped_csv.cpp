@@ -7,12 +7,14 @@
 #include "base/units.h"
 #include "flight/families/clock_steps.h"
 #include "flight/families/log_family.h"
+#include "flight/families/logging_pauses.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/log_configuration.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -159,7 +161,8 @@ class MappedRows {
             if (!skipped->lines.empty()) log.skipped.push_back(std::move(*skipped));
         if (steps) log.skipped.push_back(*std::move(steps));
         std::vector<FlightSeries> recordings;
-        for (auto& recording : recordings_of(std::move(log))) recordings.push_back(series_of(std::move(recording)));
+        for (auto& recording : recordings_of(std::move(log)))
+            std::ranges::move(split_at_pauses(series_of(std::move(recording))), std::back_inserter(recordings));
         return recordings;
     }
 
