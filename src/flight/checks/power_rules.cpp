@@ -1,5 +1,6 @@
 #include "flight/checks/power_rules.h"
 
+#include "base/statistics.h"
 #include "base/units.h"
 #include "flight/checks/runs.h"
 #include "flight/checks/unusual_rules.h"
@@ -29,6 +30,7 @@ constexpr double same_throttle_percent = 2.0;
 constexpr double max_pack_v = 60.0;        // 14 LiPo cells
 constexpr double min_pack_v = 2.5;         // one cell, empty
 constexpr double min_voltage_part = 0.55;  // 2.3 V of a cell that began full
+constexpr double varied_current = 2.0;     // its 95th over its 5th percentile, for a voltage to vary with it
 constexpr double max_dead_part = 0.5;      // of the samples with an open throttle: with more the energy is not measured
 constexpr double min_dead_s = 30.0;        // the throttle of a motor that is not armed may be open for less
 constexpr double min_mean_power_w = 3.0;
@@ -87,6 +89,15 @@ bool is_constant_in_flight(const PowerRecord& r) {
         const auto power_w = part_of(r.power_w, flown);
         return power_w.size() >= enough && std::ranges::count(power_w, power_w.front()) == std::ssize(power_w);
     });
+}
+
+/// A pack's voltage falls with its current and its charge.
+bool has_constant_voltage(const PowerRecord& r) {
+    if (r.is_sum_of_circuits || r.voltage_v.size() < stuck_samples || !r.has_current()) return false;
+    if (std::ranges::count(r.voltage_v, r.voltage_v.front()) != std::ssize(r.voltage_v)) return false;
+    auto currents_a = r.current_a;
+    std::ranges::sort(currents_a);
+    return quantile(currents_a, 0.95) > varied_current * std::max(quantile(currents_a, 0.05), 0.0);
 }
 
 bool has_pack_voltage(const PowerRecord& r) { return r.max_v >= min_pack_v && r.max_v <= max_pack_v; }
@@ -152,6 +163,12 @@ constexpr PowerRule rules[] = {
     {.kind = "implausible voltage",
      .text = "the voltage falls from {max_v:.4g} to {min_v:.4g} V, too far for a pack: is its sensor damaged?",
      .when = [](const PowerRecord& r) { return has_pack_voltage(r) && r.min_v < min_voltage_part * r.max_v; },
+     .warn_above = 0.0,
+     .needs_energy = false},
+    {.kind = "sensor stuck",
+     .text = "the voltage is {max_v:.4g} V throughout while the current varies: it is not that of the pack (but of a "
+             "receiver, or a constant), so that the energy is approximate at most",
+     .when = has_constant_voltage,
      .warn_above = 0.0,
      .needs_energy = false},
     {.kind = "counter disagrees",

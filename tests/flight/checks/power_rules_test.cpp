@@ -183,6 +183,25 @@ TEST(PowerRules, OfASensorThatIsDeadWithAnOpenThrottle) {
     EXPECT_THAT(found_in(std::move(launched)).power_faults, IsEmpty()) << "28 s of an open throttle";
 }
 
+TEST(PowerRules, OfAVoltageThatStandsStill) {
+    const auto stands = [](double rest_a, double changed_v = 12.6) {
+        auto record = sound_record();
+        record.voltage_v.assign(record.time_s.size(), 12.6);
+        record.voltage_v[500] = changed_v;
+        for (std::size_t i = 0; i < first; ++i) record.current_a[i] = rest_a;
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_constant = Contains(
+        "the voltage is 12.6 V throughout while the current varies: it is not that of the "
+        "pack (but of a receiver, or a constant), so that the energy is approximate at most");
+    EXPECT_THAT(stands(0.05), is_constant);
+    EXPECT_THAT(stands(0.05, 12.5), testing::Not(is_constant));
+    auto record = sound_record();
+    record.voltage_v.assign(record.time_s.size(), 12.6);
+    record.current_a.assign(record.time_s.size(), 2.0);
+    EXPECT_THAT(found_in(std::move(record)).warnings, testing::Not(is_constant)) << "with that current, too";
+}
+
 TEST(PowerRules, OfPowerOutsideOfTheFlight) {
     const auto outside = [](std::size_t count, double power_w = 22.0) {
         auto record = sound_record();
