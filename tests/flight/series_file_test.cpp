@@ -150,6 +150,22 @@ TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
     EXPECT_TRUE(warnings_of(series).empty());
 }
 
+TEST(SeriesFile, RefusesNumbersWithWhichAFlightLastsForDays) {
+    const auto refused = [](int rows, double interval_s) {
+        std::string text = "time_s,power_w,air_temperature_c\n";
+        for (int i = 0; i < rows; ++i)
+            text += fmt::format("{},{},{}\n", interval_s * i, 100 + i % 3, i % 50 == 0 ? "20" : "");
+        return test::rejected([&] { parse_series_csv(text, "s.csv"); });
+    };
+    EXPECT_EQ(
+        refused(100, 200.0),
+        "s.csv: the times of 'time_s' are 200 s apart, for 0.231 days: they are in a smaller unit; write seconds, "
+        "or name the column otherwise and state its unit in a column map");
+    EXPECT_THAT(refused(40'000, 10.0), HasSubstr("for 4.63 days"));
+    EXPECT_EQ(refused(2000, 1.0), "") << "another track is rarer";
+    EXPECT_EQ(refused(29, 200.0), "");
+}
+
 TEST(SeriesFile, RefusesANewerFormatAndWhatItDoesNotKnow) {
     const auto refusal = [](const std::string& text) {
         return test::rejected([&] { parse_series_csv(text, "s.csv"); });

@@ -8,6 +8,7 @@
 #include "flight/families/clock_steps.h"
 #include "flight/families/log_family.h"
 #include "flight/families/logging_pauses.h"
+#include "flight/families/series_table.h"
 #include "flight/telemetry_series.h"
 #include "telemetry/log_configuration.h"
 
@@ -271,20 +272,10 @@ class MappedRows {
 
     /// Numbers with which a flight lasts for days are in another unit.
     void refuse_slow_clock() const {
-        constexpr double max_interval_s = 15.0;
-        constexpr double max_days = 4.0;
-        constexpr std::size_t enough_rows = 30;
-        constexpr double day_s = 24.0 * units::seconds_per_hour;
-        const double interval_s = median_interval_s(rows_.time_s);
-        const double days = interval_s * static_cast<double>(rows_.time_s.size()) / day_s;
-        if (clock_.is_clock() || rows_.time_s.size() < enough_rows ||
-            (interval_s <= max_interval_s && days <= max_days))
-            return;
-        throw InputError(
-            {file_},
-            fmt::format("the times of '{}' are {:.3g} s apart, for {:.3g} days: they are in a smaller unit", time_name_,
-                        interval_s, days),
-            "state it in the column map, in [time]: unit = \"ms\", \"us\" or \"ns\"");
+        const auto finding = clock_.is_clock() ? "" : slow_clock_finding(time_name_, rows_.time_s);
+        if (!finding.empty())
+            throw InputError({file_}, finding,
+                             "state it in the column map, in [time]: unit = \"ms\", \"us\" or \"ns\"");
     }
 
     const ColumnMap& map_;

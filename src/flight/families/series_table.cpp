@@ -5,6 +5,7 @@
 #include "base/number.h"
 #include "base/text.h"
 #include "base/toml_reader.h"
+#include "base/units.h"
 #include "flight/flight_data.h"
 #include "flight/select.h"
 #include "flight/telemetry_series.h"
@@ -55,11 +56,23 @@ class TableReader {
             std::size_t track = 0;
             std::erase_if(series.tracks, [&](const Track&) { return !is_bound_[track++]; });
         }
+        if (!matter_.present) refuse_slow_clock();
         if (recordings_.size() == 1 && !chosen_.empty()) require_chosen(recordings_.front());
         return std::move(recordings_);
     }
 
   private:
+    void refuse_slow_clock() const {
+        for (const auto& series : recordings_) {
+            if (series.tracks.empty()) continue;
+            const auto& longest =
+                std::ranges::max(series.tracks, {}, [](const Track& track) { return track.time_s.size(); });
+            if (const auto finding = slow_clock_finding("time_s", longest.time_s); !finding.empty())
+                throw InputError({file_}, finding,
+                                 "write seconds, or name the column otherwise and state its unit in a column map");
+        }
+    }
+
     void require_chosen(const FlightSeries& series) const {
         const auto power = select_tracks(series).power_w;
         if (power.time_s == chosen_.time_s && power.value == chosen_.value) return;
@@ -176,6 +189,19 @@ std::vector<FlightSeries> read_series_table(FrontMatter matter, std::string_view
     for_each_csv_row(
         text, file, [&](const CsvRowView& row) { reader.read_row(row); }, dialect);
     return reader.take();
+}
+
+std::string slow_clock_finding(const std::string& column, const std::vector<double>& time_s) {
+    constexpr double max_interval_s = 15.0;
+    constexpr double max_days = 4.0;
+    constexpr std::size_t enough_rows = 30;
+    constexpr double day_s = 24.0 * units::seconds_per_hour;
+    if (time_s.size() < enough_rows) return "";
+    const double interval_s = median_interval_s(time_s);
+    const double days = interval_s * static_cast<double>(time_s.size()) / day_s;
+    if (interval_s <= max_interval_s && days <= max_days) return "";
+    return fmt::format("the times of '{}' are {:.3g} s apart, for {:.3g} days: they are in a smaller unit", column,
+                       interval_s, days);
 }
 
 }  // namespace flightwatt::flight

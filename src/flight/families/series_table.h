@@ -22,4 +22,8 @@ struct FrontMatter {
 std::vector<FlightSeries> read_series_table(FrontMatter matter, std::string_view text, const std::string& file,
                                             std::string_view plain_source);
 
+/// Returns the finding that times of a column, as seconds, are in a smaller unit: more than 15 s apart, or for more than
+/// 4 days; empty if they are not, or fewer than 30.
+std::string slow_clock_finding(const std::string& column, const std::vector<double>& time_s);
+
 }  // namespace flightwatt::flight
