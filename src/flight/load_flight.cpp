@@ -217,6 +217,8 @@ LoadedFlight segment_and_check(FlightSeries series, const LoadOptions& options) 
     assessment = assess_flight(data, loaded.phases, options.segmentation);
     if (options.correct_idle_offset && loaded.lacks_power.empty()) {
         correct_idle_offset(series, data, loaded.power.idle);
+        if (loaded.power.idle)
+            std::erase_if(loaded.power.warnings, [](const auto& found) { return found.kind == "current at rest"; });
         data = select_tracks(series);
         if (options.bridges_link_gaps) bridge_link_gaps(data);
         loaded.diagnostics = all_diagnostics(data, loaded.phases, assessment);

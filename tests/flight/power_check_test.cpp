@@ -116,6 +116,20 @@ TEST(PowerReport, TakesTheIdleCurrentOutOnlyWhenAsked) {
     EXPECT_EQ(power_track(series).source, power_track(before).source);
 }
 
+TEST(PowerReport, DoesNotAdviseWhatWasDone) {
+    auto series = sound_flight();
+    for (auto& track : series.tracks)
+        if (track.name == "current_a")
+            for (auto& current : track.value) current += 0.5;
+    const auto advises = [&](bool corrects) {
+        const auto texts = texts_of(segment_and_check(series, {.correct_idle_offset = corrects}).diagnostics);
+        return std::ranges::any_of(
+            texts, [](const auto& text) { return text.find("--correct-idle-offset") != std::string::npos; });
+    };
+    EXPECT_TRUE(advises(false));
+    EXPECT_FALSE(advises(true));
+}
+
 TEST(PowerReport, ClosesOnTheRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     for (const auto* name : {"20_07_03__12_17_45", "20_07_05__10_26_44", "20_07_10__06_53_03"}) {

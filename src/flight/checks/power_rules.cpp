@@ -146,7 +146,13 @@ constexpr PowerRule rules[] = {
     {.kind = "current at rest",
      .text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: "
              "electronics, or an offset of the sensor and its counters; --correct-idle-offset removes it",
-     .when = is_loaded_at_rest,
+     .when = [](const PowerRecord& r) { return r.has_throttle() && is_loaded_at_rest(r); },
+     .warn_above = 0.0,
+     .needs_energy = false},
+    {.kind = "current at rest",
+     .text = "the current is {rest_a:.2f} A at rest on the ground, {rest_percent:.0f} % of the mean in flight: idling "
+             "motors, as no throttle shows them off, electronics, or an offset of the sensor",
+     .when = [](const PowerRecord& r) { return !r.has_throttle() && is_loaded_at_rest(r); },
      .warn_above = 0.0,
      .needs_energy = false},
     {.kind = "sensor drift", .findings = rest_current_drift, .warn_above = 0.05, .needs_energy = false},

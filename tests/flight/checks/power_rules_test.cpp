@@ -231,6 +231,14 @@ TEST(PowerRules, OfACurrentAtRest) {
     EXPECT_THAT(at_rest(0.99, 20.0), IsEmpty());
     EXPECT_THAT(at_rest(0.101, 1.0), is_loaded) << "5 % of the mean";
     EXPECT_THAT(at_rest(0.099, 1.0), IsEmpty());
+    auto unthrottled = sound_record();
+    for (std::size_t i = 0; i < first; ++i) unthrottled.current_a[i] = 0.2;
+    EXPECT_THAT(found_in(unthrottled).warnings, Contains(HasSubstr("--correct-idle-offset removes it")));
+    unthrottled.throttle_percent.clear();
+    EXPECT_THAT(
+        found_in(std::move(unthrottled)).warnings,
+        Contains("the current is 0.20 A at rest on the ground, 10 % of the mean in flight: idling motors, as no "
+                 "throttle shows them off, electronics, or an offset of the sensor"));
 }
 
 TEST(PowerRules, OfVoltagesThatNoPackHas) {
