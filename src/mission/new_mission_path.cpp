@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "path/area.h"
 #include "path/plan_blocks.h"
 #include "path/turns.h"
@@ -54,10 +55,9 @@ double best_heading_deg(std::string_view text, const std::string& file, double s
 /// The distance between the lines over an area, with the reason.
 std::pair<double, std::string> choose_spacing(const PlanToFly& plan, double airspeed_m_per_s, bool is_rotorcraft) {
     constexpr double usual_m = 25.0;  // of a camera 50 m above the ground, with images that overlap by half
-    constexpr double whole_percent = 100.0;
     if (plan.spacing_m) return {*plan.spacing_m, "as asked"};
     if (plan.overlap_percent)
-        return {*plan.swath_m * (1.0 - *plan.overlap_percent / whole_percent),
+        return {*plan.swath_m * (units::percent_per_whole - *plan.overlap_percent) / units::percent_per_whole,
                 fmt::format("images {:g} m wide overlap by {:g} %", *plan.swath_m, *plan.overlap_percent)};
     if (is_rotorcraft) return {usual_m, "assumed: your camera and height decide it (--swath, --overlap)"};
     return {2.0 * turn_radius_m(airspeed_m_per_s), fmt::format("for turns with a bank of {} degrees", bank_deg)};

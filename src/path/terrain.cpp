@@ -112,8 +112,9 @@ const Terrain::Tile& Terrain::tile_at(int latitude_deg, int longitude_deg) {
 }
 
 double Terrain::ground_m(const GeodeticPosition& place) {
-    const double south_deg = std::floor(place.latitude_deg);
-    const double west_deg = std::floor(place.longitude_deg);
+    constexpr double rounding_deg = 1e-9;
+    const double south_deg = std::floor(place.latitude_deg + rounding_deg);
+    const double west_deg = std::floor(place.longitude_deg + rounding_deg);
     const auto& tile = tile_at(static_cast<int>(south_deg), static_cast<int>(west_deg));
     const auto height_m = [&](std::size_t row, std::size_t column) {
         constexpr std::int16_t none = INT16_MIN;
@@ -128,8 +129,8 @@ double Terrain::ground_m(const GeodeticPosition& place) {
         return static_cast<double>(metres);
     };
     const auto last = static_cast<double>(tile.rows - 1);
-    const double row = (south_deg + 1.0 - place.latitude_deg) * last;
-    const double column = (place.longitude_deg - west_deg) * last;
+    const double row = std::max(0.0, south_deg + 1.0 - place.latitude_deg) * last;
+    const double column = std::max(0.0, place.longitude_deg - west_deg) * last;
     const auto north = static_cast<std::size_t>(std::min(std::floor(row), last - 1.0));
     const auto west = static_cast<std::size_t>(std::min(std::floor(column), last - 1.0));
     const double to_south = row - static_cast<double>(north);

@@ -337,7 +337,8 @@ path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaul
     } else if (defaults.airspeed_m_per_s == 0.0) {
         read_path_airspeed(path, mission, defaults);  // which throws
     }
-    for (const auto& text : plan.not_flown) mission.notes.push_back("path: " + text);
+    for (const auto& text : plan.not_flown)
+        if (std::ranges::find(plan.missing, text) == plan.missing.end()) mission.notes.push_back("path: " + text);
     for (const auto& text : plan.missing) mission.uncertain.push_back("the plan is not flown as it is: " + text);
     if (mission.mechanical && plan.is_of_multirotor.value_or(is_rotorcraft) != is_rotorcraft)
         mission.uncertain.emplace_back(is_rotorcraft ? "the plan is for a wing, and the model of a rotorcraft"
