@@ -35,12 +35,13 @@ Places places_of(const flight::FlightData& data) {
     const auto& north = is_local ? data.north_m : data.latitude_deg;
     if (east.empty() || north.empty()) return {};
     const auto norths = resample(north, east.time_s);
+    std::optional<double> parallel;
     Places places;
     for (std::size_t i = 0; i < norths.size(); ++i) {
         if (!is_local && east.value[i] == 0.0 && norths[i] == 0.0) continue;
-        const double parallel = is_local ? 1.0 : m_per_degree * std::cos(norths[i] / units::degree_per_rad);
+        if (!parallel) parallel = is_local ? 1.0 : m_per_degree * std::cos(norths[i] / units::degree_per_rad);
         places.time_s.push_back(east.time_s[i]);
-        places.east_m.push_back(east.value[i] * parallel);
+        places.east_m.push_back(east.value[i] * *parallel);
         places.north_m.push_back(norths[i] * (is_local ? 1.0 : m_per_degree));
     }
     return places;

@@ -1,6 +1,7 @@
 #include "answer/plan_check.h"
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "battery/battery_toml.h"
 #include "helpers/rejected.h"
 #include "mission/mission_file.h"
@@ -173,7 +174,10 @@ TEST(PlanCheck, IsPerhapsAtMostFarBeyondWhatTheFlightsFlew) {
 
 TEST(PlanCheck, IsPerhapsAtMostWithThePackOfAnotherAircraft) {
     auto question = lines_of(1.0);
-    question.aircraft.model.pack_voltage_v = 25.2;
+    auto model = read_file(test::source_dir() / "fits/mechanical/synthetic-wing.toml");
+    const auto file = question.plan.file.parent_path() / "six_cells.toml";
+    test::write_text(file, model.insert(model.find("name ="), "pack_voltage_v = 25.2\n"));
+    question.aircraft.mechanical = file.string();
     const auto check = check_plan(question);
     EXPECT_EQ(check.fit, PlanFit::perhaps);
     EXPECT_THAT(check.reason, HasSubstr("has it another number of cells?"));

@@ -126,7 +126,7 @@ TEST(DischargeRecord, RefusesByNameAndReason) {
     EXPECT_EQ(of([](test::SampleColumns& s) { s.current_a.clear(); }), "f.data: synthetic_7: has no current" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) { std::fill(s.voltage_v.begin(), s.voltage_v.end(), 11.0); }),
               "f.data: synthetic_7: its voltage is 11 throughout" + hint);
-    EXPECT_EQ(of([](test::SampleColumns& s) { s.voltage_v[3] = s.voltage_v[4] = s.voltage_v[5] = 0.0; }),
+    EXPECT_EQ(of([](test::SampleColumns& s) { std::fill_n(s.voltage_v.begin(), s.voltage_v.size() * 2 / 3, 0.0); }),
               "f.data: synthetic_7: its voltage is not positive throughout" + hint);
     EXPECT_EQ(of([](test::SampleColumns& s) {
                   for (auto* column :

@@ -278,9 +278,10 @@ const std::set<std::string> no_files{"AIRCRAFT",
                                      "LAT,LON"};
 
 /// Options that name files to read; those that write have a command above.
-const std::set<std::string> reading{
-    "--published", "--model",   "--mission",    "--disturb", "--battery", "--path-from", "--follow",     "--log",
-    "--messages",  "--profile", "--files-from", "--outline", "--columns", "--plan",      "--packs-file", "--from"};
+const std::set<std::string> reading{"--published",  "--model",   "--mission", "--disturb",  "--battery",
+                                    "--path-from",  "--follow",  "--log",     "--messages", "--profile",
+                                    "--files-from", "--outline", "--columns", "--plan",     "--packs-file",
+                                    "--from",       "--terrain"};
 
 class InputsKept : public testing::Test {
   protected:

@@ -5,7 +5,7 @@
 #include "path/plans/fence.h"
 #include "path/plans/json_text.h"
 #include "path/plans/patterns.h"
-#include "path/terrain.h"
+#include "path/plans/terrain.h"
 
 #include <algorithm>
 #include <array>
@@ -37,6 +37,7 @@ struct MissionItems {
     Location where;
     std::optional<PlannedSpeed> speed = {};
     bool is_of_px4 = false;
+    bool is_of_ardupilot = false;
     bool has_rally_points = false;
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
 };
@@ -265,15 +266,15 @@ class ItemReader {
     /// CIRCLE_RADIUS of ArduCopter.
     double assumed_radius_m(const MissionItem& item) {
         constexpr double px4_m = 80.0, arduplane_m = 60.0, rotorcraft_m = 10.0;
-        const double wing_m = mission_.is_of_px4 ? px4_m : arduplane_m;
+        const double wing_m = mission_.is_of_ardupilot ? arduplane_m : px4_m;
         const double radius_m = settings_.is_rotorcraft ? rotorcraft_m : wing_m;
         if (!settings_.radius_m)
             report(item, fmt::format("the circle has no radius: {:.0f} m are assumed, of {}; radius_m in [path] states "
                                      "another",
                                      radius_m,
-                                     settings_.is_rotorcraft ? "ArduCopter"
-                                     : mission_.is_of_px4    ? "PX4"
-                                                             : "ArduPlane"));
+                                     settings_.is_rotorcraft    ? "ArduCopter"
+                                     : mission_.is_of_ardupilot ? "ArduPlane"
+                                                                : "PX4"));
         return radius_m;
     }
 
@@ -388,7 +389,9 @@ class QgcReader {
             copy_numbers(mission, "plannedHomePosition", mission_.home);
             read_speed(mission);
             constexpr int px4 = 12;  // MAV_AUTOPILOT
+            constexpr int ardupilot = 3;
             mission_.is_of_px4 = mission.value("firmwareType", Json()) == px4;
+            mission_.is_of_ardupilot = mission.value("firmwareType", Json()) == ardupilot;
             const auto rally = plan.value("rallyPoints", Json::object());
             mission_.has_rally_points = rally.is_object() && !rally.value("points", Json::array()).empty();
             read_items(mission.at("items"), "item", false);
@@ -554,6 +557,7 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
         throw InputError({file, 1}, fmt::format("begins with '{}'", truncated(line)),
                          fmt::format("expected \"{}\"", version));
     MissionItems mission;
+    mission.is_of_ardupilot = !is_without_home;  // PX4's files have no home
     if (is_without_home) mission.where = {file, 1};
     for (std::size_t number = 2; std::getline(lines, line); ++number) {
         const auto values = item_numbers(line, {file, number});

@@ -24,7 +24,7 @@ TEST(Requirement, IsMissedWhereAPartIsUncertain) {
     EXPECT_FALSE(reason_missed(as_modelled, summary));
     summary.uncertain = {"the plan is not flown as it is: item 3"};
     EXPECT_THAT(reason_missed(as_modelled, summary).value(),
-                HasSubstr("survey: whether it keeps the reserve is uncertain: a part"));
+                HasSubstr("survey: whether it keeps the reserve is uncertain: the plan is not flown"));
     EXPECT_FALSE(reason_missed({}, summary)) << "nothing is required";
 }
 

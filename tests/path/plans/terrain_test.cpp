@@ -1,4 +1,4 @@
-#include "path/terrain.h"
+#include "path/plans/terrain.h"
 
 #include "base/atomic_file.h"
 #include "helpers/rejected.h"

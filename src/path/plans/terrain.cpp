@@ -1,4 +1,4 @@
-#include "path/terrain.h"
+#include "path/plans/terrain.h"
 
 #include "base/error.h"
 #include "base/input_file.h"
