@@ -323,7 +323,8 @@ Reach find_reach(const MissionLoader& mission_of, const std::optional<double>& p
     const bool flies_back = setup.cruise_path && drawn_path(*setup.cruise_path->plan).elements.back().is_return_leg;
     const MissionVariation variation = [&](double value) {
         MissionReadOptions reading{.allow_unplanned = true};
-        if (unit == ReachUnit::return_m && flies_back && value >= length_m) return mission;  // straight back
+        if (unit == ReachUnit::return_m && flies_back && value >= length_m)
+            return mission_of(reading);  // straight back
         (unit == ReachUnit::cruise_s   ? reading.cruise_s
          : unit == ReachUnit::circles  ? reading.circles
          : unit == ReachUnit::return_m ? reading.return_after_m

@@ -14,7 +14,6 @@ namespace {
 
 using test::known_pack;
 using test::rejected;
-using test::synthetic_discharge;
 
 test::SampleColumns flight() { return test::discharge_columns(known_pack(), {}, 7); }
 

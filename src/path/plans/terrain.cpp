@@ -104,7 +104,8 @@ const Terrain::Tile& Terrain::tile_at(int latitude_deg, int longitude_deg) {
         throw InputError({folder_.string()}, fmt::format("has no tile {} of the terrain under the plan", name),
                          "expected tiles of SRTM with a height each 1 or 3 seconds of arc");
     tile.heights = read_file(tile.file);
-    tile.rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(tile.heights.size() / bytes_per_height)));
+    const std::size_t heights = tile.heights.size() / bytes_per_height;
+    tile.rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(heights)));
     if (tile.rows < 2 || tile.rows * tile.rows * bytes_per_height != tile.heights.size())
         throw InputError({tile.file.string()}, fmt::format("has {} bytes, which is no tile", tile.heights.size()),
                          "expected 2 bytes for each of 1201 x 1201 or 3601 x 3601 heights: is it cut, or packed?");

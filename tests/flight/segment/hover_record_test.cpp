@@ -1,6 +1,7 @@
 #include "flight/segment/hover_record.h"
 
 #include "flight/segment.h"
+#include "flight/select.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 #include "flight/select/circuits.h"
 
+#include "base/error.h"
 #include "flight/phase_statistics.h"
 #include "flight/select.h"
 

@@ -13,7 +13,6 @@ namespace flightwatt::flight {
 namespace {
 
 using testing::Contains;
-using testing::HasSubstr;
 
 /// A sample a second of 15 V and 10 A, of which those that drop have other voltages and currents.
 FlightSeries battery(std::size_t samples, const std::function<bool(std::size_t)>& drops, double dropped_v = 0.0,
