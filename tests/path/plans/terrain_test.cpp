@@ -20,7 +20,7 @@ constexpr std::size_t rows = 121;  // 30 seconds of arc apart
 /// A folder with a tile from 47 N, 8 E on, of the height of each place in it.
 template <typename Height>
 std::filesystem::path folder_of(const std::string& name, Height height_m, const char* tile = "N47E008.hgt") {
-    const auto folder = std::filesystem::path(testing::TempDir()) / name;
+    auto folder = std::filesystem::path(testing::TempDir()) / name;
     std::filesystem::create_directories(folder);
     std::string bytes;
     for (std::size_t row = 0; row < rows; ++row)
@@ -69,7 +69,7 @@ TEST(Terrain, NamesTheTileThatIsMissingCutOrVoid) {
             },
             folder),
         "N47E008.hgt: has no height near latitude 47.5000, longitude 8.2500; expected a tile whose voids are filled");
-    write_file_atomically(folder / "N47E008.hgt", std::string(2 * 121 * 120, '\0'));
+    write_file_atomically(folder / "N47E008.hgt", std::string(std::size_t{2} * 121 * 120, '\0'));
     Terrain cut(folder);
     EXPECT_EQ(rejected(
                   [&] {
