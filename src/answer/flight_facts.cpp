@@ -27,7 +27,8 @@ struct Places {
     std::vector<double> north_m;
 };
 
-/// Those of positions in metres or in degrees, which a sphere converts within 1 %; latitude and longitude 0 is none.
+/// Those of positions in metres or in degrees, which a sphere converts within 1 %. Latitude and longitude 0 are
+/// left out: the receiver had no fix.
 Places places_of(const flight::FlightData& data) {
     constexpr double m_per_degree = 111195.0;
     const bool is_local = !data.east_m.empty() && !data.north_m.empty();

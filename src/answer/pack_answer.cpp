@@ -62,7 +62,7 @@ std::optional<Interval> range_c(const battery::BatteryIdentification& identified
 /// Flights that leave more than this factor between the ends of its interval do not determine a capacity.
 constexpr double max_capacity_ratio = 3.0;
 
-/// BATT_CAPACITY of ArduPilot where nobody has set it.
+/// The default of ArduPilot's BATT_CAPACITY.
 constexpr double factory_capacity_ah = 3.3;
 
 /// Without a basis the flights' own estimate is the capacity, where they determine one.
@@ -105,7 +105,7 @@ CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std:
     if (logged_ah == std::set{factory_capacity_ah}) {
         CapacityChoice unset;
         unset.warning = fmt::format(
-            "the logs' parameters state {} Ah, which ArduPilot has until somebody sets it (BATT_CAPACITY): it is not used; "
+            "the logs' parameters state {} Ah, the default of ArduPilot's BATT_CAPACITY: it is not used; "
             "--capacity AH states that on the pack's label",
             factory_capacity_ah);
         return unset;

@@ -31,7 +31,7 @@ TEST(ChooseCapacity, HasNoneWhereLogsDiffer) {
 TEST(ChooseCapacity, DoesNotTakeThatOfAParameterWhichNobodySet) {
     const auto unset = choose_capacity({}, {logged(3.3), logged(3.3)});
     EXPECT_FALSE(unset.value_ah);
-    EXPECT_THAT(unset.warning, HasSubstr("3.3 Ah, which ArduPilot has until somebody sets it"));
+    EXPECT_THAT(unset.warning, HasSubstr("3.3 Ah, the default of ArduPilot's BATT_CAPACITY"));
     EXPECT_EQ(choose_capacity(3.3, {logged(3.3)}).value_ah, 3.3);
 }
 

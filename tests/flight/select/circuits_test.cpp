@@ -107,7 +107,7 @@ TEST(Circuits, KnowByParametersWhichMonitorsMeasureOnePack) {
     series.monitor_kinds["1"] = same_pins_monitor;
     EXPECT_NEAR(first_w(series), 16.0, 1e-9);
     auto equal = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(1.01)}});
-    EXPECT_NEAR(first_w(equal), 16.0, 1e-9) << "as far as currents tell";
+    EXPECT_NEAR(first_w(equal), 16.0, 1e-9) << "by their currents";
     equal.monitor_kinds["0"] = equal.monitor_kinds["1"] = smart_pack_monitor;
     EXPECT_NEAR(first_w(equal), 2.01 * 16.0, 1e-9);
 }
