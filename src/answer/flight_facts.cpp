@@ -30,7 +30,6 @@ struct Places {
 /// Those of positions in metres or in degrees, which a sphere converts within 1 %. Latitude and longitude 0 are
 /// left out: the receiver had no fix.
 Places places_of(const flight::FlightData& data) {
-    constexpr double m_per_degree = 111195.0;
     const bool is_local = !data.east_m.empty() && !data.north_m.empty();
     const auto& east = is_local ? data.east_m : data.longitude_deg;
     const auto& north = is_local ? data.north_m : data.latitude_deg;
@@ -40,10 +39,11 @@ Places places_of(const flight::FlightData& data) {
     Places places;
     for (std::size_t i = 0; i < norths.size(); ++i) {
         if (!is_local && east.value[i] == 0.0 && norths[i] == 0.0) continue;
-        if (!parallel) parallel = is_local ? 1.0 : m_per_degree * std::cos(norths[i] / units::degree_per_rad);
+        if (!parallel)
+            parallel = is_local ? 1.0 : units::metre_per_degree * std::cos(norths[i] / units::degree_per_rad);
         places.time_s.push_back(east.time_s[i]);
         places.east_m.push_back(east.value[i] * *parallel);
-        places.north_m.push_back(norths[i] * (is_local ? 1.0 : m_per_degree));
+        places.north_m.push_back(norths[i] * (is_local ? 1.0 : units::metre_per_degree));
     }
     return places;
 }
