@@ -130,11 +130,10 @@ std::vector<FamilyTrack> ardupilot_tracks() {
 }
 
 /// The first group of the first text that has the pattern.
-std::string found_in_texts(const telemetry::LogFacts& facts, const char* pattern) {
-    const std::regex expression(pattern);
+std::string found_in_texts(const telemetry::LogFacts& facts, const std::regex& pattern) {
     for (const auto& text : facts.texts) {
         std::smatch found;
-        if (std::regex_search(text, found, expression)) return found[1];
+        if (std::regex_search(text, found, pattern)) return found[1];
     }
     return "";
 }
@@ -160,8 +159,11 @@ std::string vehicle_of_parameters(const std::map<std::string, double>& parameter
 
 void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series) {
     // "APM:Copter V3.4.4", "ArduCopter V3.6.8", "APMrover2 v2.50"
-    auto vehicle = found_in_texts(log.facts, "(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
-    if (!found_in_texts(log.facts, "APM(rover)").empty()) vehicle = "Rover";
+    static const std::regex vehicles("(?:Ardu|APM:)(Copter|Plane|Rover|Sub)\\b");
+    static const std::regex rovers("APM(rover)");
+    static const std::regex simulators("(SITL)");
+    auto vehicle = found_in_texts(log.facts, vehicles);
+    if (!found_in_texts(log.facts, rovers).empty()) vehicle = "Rover";
     if (vehicle.empty()) vehicle = vehicle_of_parameters(log.facts.parameters);
     series.aircraft_id = board_serial(log.facts);
     series.aircraft_name = vehicle.empty() ? "ArduPilot" : "Ardu" + vehicle;
@@ -170,7 +172,7 @@ void describe_ardupilot(const telemetry::AutopilotLog& log, FlightSeries& series
     series.monitor_capacities_ah = monitor_capacities_ah(log.facts.parameters, {"BATT_CAPACITY"}, "BATTN_CAPACITY");
     series.pack_serial = pack_serials(log.facts.parameters);
     const bool is_simulated =
-        !found_in_texts(log.facts, "(SITL)").empty() ||
+        !found_in_texts(log.facts, simulators).empty() ||
         std::ranges::any_of(log.messages, [](const auto& of) { return of.name == "SIM" || of.name == "SIM2"; });
     if (is_simulated) series.aircraft_name += " SITL";
     series.firmware = vehicle == "Copter"  ? "rotorcraft"
@@ -224,7 +226,8 @@ void add_known_packs(const std::map<std::string, double>& parameters, std::map<s
 }  // namespace
 
 std::string board_serial(const telemetry::LogFacts& facts) {
-    auto serial = found_in_texts(facts, "([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
+    static const std::regex serials("([0-9A-F]{8} [0-9A-F]{8} [0-9A-F]{8})$");
+    auto serial = found_in_texts(facts, serials);
     std::ranges::replace(serial, ' ', '-');
     return serial;
 }
