@@ -26,8 +26,11 @@ AreaOutlines kml_area(std::string_view text, const std::string& file) {
     for (const auto& polygon : document.select_nodes("//Polygon")) {
         const auto ring = [&](const char* boundary, std::vector<Outline>& outlines) {
             const auto path = fmt::format("{}/LinearRing", boundary);
-            for (const auto& node : polygon.node().select_nodes(path.c_str()))
-                outlines.push_back(kml_places(node.node().select_nodes("coordinates"), file).places);
+            for (const auto& node : polygon.node().select_nodes(path.c_str())) {
+                auto& outline = outlines.emplace_back();
+                for (const auto& corner : kml_places(node.node().child("coordinates"), file))
+                    outline.push_back(corner.place);
+            }
         };
         static const std::regex no_fly("no[ _-]?fly", std::regex::icase);
         const auto placemark = polygon.node().select_node("ancestor::Placemark[1]/name");

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -227,16 +228,35 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
         coordinates = points;
     else if (!points.empty())
         plan.not_flown.emplace_back("its points are not flown to: it has a path");
-    const auto found = kml_places(coordinates, file);
-    if (found.places.empty()) throw InputError({file}, "has no waypoints", hint);
-    if (found.has_altitudes) plan.not_flown.emplace_back("the altitudes of KML are not flown: the path is level");
-    if (!found.is_level) plan.missing.push_back(plan.not_flown.back());
-    for (const auto& place : found.places) {
-        auto& entry = plan.entries.emplace_back();
-        entry.name = fmt::format("waypoint {}", plan.entries.size());
-        entry.where = {file};
-        entry.geographic = place;
+    std::set<double> ignored_m;
+    std::set<std::string> modes;
+    for (const auto& node : coordinates) {
+        const std::string mode = node.node().parent().child_value("altitudeMode");
+        const bool has_altitude = mode == "absolute" || mode == "relativeToGround";
+        for (const auto& [place, altitude_m] : kml_places(node.node(), file)) {
+            auto& entry = plan.entries.emplace_back();
+            entry.name = fmt::format("waypoint {}", plan.entries.size());
+            entry.where = {file};
+            entry.geographic = place;
+            if (has_altitude && altitude_m) {
+                set_value(entry, entry_values.front(), *altitude_m, entry.where);
+                modes.insert(mode);
+            } else {
+                ignored_m.insert(altitude_m.value_or(0.0));
+            }
+        }
     }
+    if (plan.entries.empty()) throw InputError({file}, "has no waypoints", hint);
+    if (modes.size() > 1)
+        throw InputError({file}, "has altitudes above the sea and above the ground", "give one altitudeMode");
+    const auto report = [&](const char* text, bool is_missing) {
+        plan.not_flown.emplace_back(text);
+        if (is_missing) plan.missing.emplace_back(text);
+    };
+    plan.is_above_home = modes.contains("relativeToGround");
+    if (plan.is_above_home) report("altitudes above the ground are flown as above that of its start", true);
+    if (ignored_m.size() > 1 || ignored_m.count(0.0) != ignored_m.size())
+        report("altitudes that its altitudeMode clamps to the ground are not flown", ignored_m.size() > 1);
     return plan;
 }
 

@@ -131,7 +131,7 @@ TEST(Areas, ArePolygons) {
     EXPECT_EQ(refusal("<kml/>"), "a: has no polygon to fly over; expected polygons, in GeoJSON or KML");
     EXPECT_EQ(refusal("<kml><Polygon><outerBoundaryIs><LinearRing><coordinates>8,x</coordinates></LinearRing>"
                       "</outerBoundaryIs></Polygon></kml>"),
-              "a: a place '8,x'; expected longitude,latitude in degrees");
+              "a: a place '8,x'; expected longitude,latitude in degrees and, if at all, an altitude in metres");
     std::string corners;
     for (int i = 0; i < 301; ++i) corners += fmt::format("{}[8.002{:03},47.001]", i == 0 ? "" : ",", i);
     EXPECT_NE(

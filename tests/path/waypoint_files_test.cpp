@@ -97,7 +97,7 @@ TEST(WaypointFiles, OfAutopilotsAreRecognisedByTheirContent) {
               std::string::npos);
 }
 
-TEST(WaypointFiles, AreKmlWithItsPathLevel) {
+TEST(WaypointFiles, AreThePathOfKmlElseItsPoints) {
     const auto kml = [](const std::string& inner) {
         return parse_kml("<kml><Document>" + inner + "</Document></kml>", "a.kml");
     };
@@ -112,11 +112,49 @@ TEST(WaypointFiles, AreKmlWithItsPathLevel) {
     EXPECT_FALSE(plan.entries[1].altitude_m);
     EXPECT_EQ(plan.not_flown, std::vector<std::string>{"its points are not flown to: it has a path"});
     EXPECT_EQ(kml(point + point).entries.size(), 2U);
-    EXPECT_EQ(kml(line("8,47,30 8.1,47.1,30")).not_flown,
-              std::vector<std::string>{"the altitudes of KML are not flown: the path is level"});
-    EXPECT_EQ(rejected([&] { kml(line("8,97")); }), "a.kml: a place '8,97'; expected longitude,latitude in degrees");
+    EXPECT_EQ(rejected([&] { kml(line("8,97")); }),
+              "a.kml: a place '8,97'; expected longitude,latitude in degrees and, if at all, an altitude in metres");
     EXPECT_NE(rejected([&] { kml(""); }).find("a.kml: has no waypoints; expected KML with a path"), std::string::npos);
     EXPECT_NE(rejected([&] { parse_kml("<kml>", "a.kml"); }).find("a.kml: is not XML"), std::string::npos);
+}
+
+/// Altitudes of KML were not flown: a climb of 900 m cost nothing.
+TEST(WaypointFiles, OfKmlHaveTheAltitudesOfItsMode) {
+    const auto kml = [](const std::string& mode, const char* coordinates) {
+        return parse_kml(fmt::format("<kml><LineString><altitudeMode>{}</altitudeMode><coordinates>{}</coordinates>"
+                                     "</LineString></kml>",
+                                     mode, coordinates),
+                         "a.kml");
+    };
+    const auto rises = "8,47,430 8.1,47,1330 8.2,47";
+    const auto above_sea = kml("absolute", rises);
+    EXPECT_EQ(above_sea.entries[1].altitude_m, 1330.0);
+    EXPECT_FALSE(above_sea.entries[2].altitude_m);
+    EXPECT_FALSE(above_sea.is_above_home);
+    EXPECT_TRUE(above_sea.missing.empty());
+    const auto above_ground = kml("relativeToGround", rises);
+    EXPECT_EQ(above_ground.entries[1].altitude_m, 1330.0);
+    EXPECT_TRUE(above_ground.is_above_home);
+    const std::vector<std::string> ground{"altitudes above the ground are flown as above that of its start"};
+    EXPECT_EQ(above_ground.missing, ground);
+    const std::vector<std::string> clamped{"altitudes that its altitudeMode clamps to the ground are not flown"};
+    for (const auto* mode : {"clampToGround", ""}) {
+        EXPECT_EQ(kml(mode, rises).missing, clamped) << mode;
+        EXPECT_FALSE(kml(mode, rises).entries[1].altitude_m);
+        const auto level = kml(mode, "8,47,30 8.1,47.1,30");
+        EXPECT_EQ(level.not_flown, clamped);
+        EXPECT_TRUE(level.missing.empty());
+        EXPECT_TRUE(kml(mode, "8,47,0 8.1,47.1").not_flown.empty());
+    }
+    EXPECT_NE(rejected([&] { kml("absolute", "8,47,2e9"); }).find("altitude_m"), std::string::npos);
+    EXPECT_NE(rejected([&] {
+                  parse_kml(
+                      "<kml><Point><altitudeMode>absolute</altitudeMode><coordinates>8,47,9</coordinates></Point>"
+                      "<Point><altitudeMode>relativeToGround</altitudeMode><coordinates>8,47,9</coordinates>"
+                      "</Point></kml>",
+                      "a.kml");
+              }).find("give one altitudeMode"),
+              std::string::npos);
 }
 
 constexpr std::string_view flight_plan = R"(<!DOCTYPE flight_plan SYSTEM "flight_plan.dtd">

@@ -19,24 +19,20 @@ pugi::xml_document load_kml(std::string_view text, const std::string& file, cons
     return document;
 }
 
-KmlPlaces kml_places(const pugi::xpath_node_set& coordinates, const std::string& file) {
-    KmlPlaces found;
-    std::optional<double> first_m;
-    for (const auto& node : coordinates)
-        for (const auto& place : split(node.node().text().get(), " \t\r\n")) {
-            const auto parts = split(place, ",");
-            const auto longitude = parse_number(parts.empty() ? "" : parts[0]);
-            const auto latitude = parse_number(parts.size() < 2 ? "" : parts[1]);
-            if (!longitude || !latitude || std::abs(*latitude) > 90.0 || std::abs(*longitude) > 180.0)
-                throw InputError({file}, fmt::format("a place '{}'", truncated(place)),
-                                 "expected longitude,latitude in degrees");
-            found.places.push_back({*latitude, *longitude});
-            const double altitude_m = parts.size() > 2 ? parse_number(parts[2]).value_or(0.0) : 0.0;
-            if (altitude_m != 0.0) found.has_altitudes = true;
-            if (altitude_m != first_m.value_or(altitude_m)) found.is_level = false;
-            if (!first_m) first_m = altitude_m;
-        }
-    return found;
+std::vector<KmlPlace> kml_places(const pugi::xml_node& coordinates, const std::string& file) {
+    std::vector<KmlPlace> places;
+    for (const auto& text : split(coordinates.text().get(), " \t\r\n")) {
+        const auto parts = split(text, ",");
+        const auto longitude = parse_number(parts.empty() ? "" : parts[0]);
+        const auto latitude = parse_number(parts.size() < 2 ? "" : parts[1]);
+        const auto altitude = parts.size() < 3 ? std::nullopt : parse_number(parts[2]);
+        if (!longitude || !latitude || std::abs(*latitude) > 90.0 || std::abs(*longitude) > 180.0 ||
+            (parts.size() > 2 && !altitude))
+            throw InputError({file}, fmt::format("a place '{}'", truncated(text)),
+                             "expected longitude,latitude in degrees and, if at all, an altitude in metres");
+        places.push_back({{*latitude, *longitude}, altitude});
+    }
+    return places;
 }
 
 }  // namespace flightwatt::path

@@ -2,6 +2,7 @@
 
 #include "path/path_entries.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,17 +11,16 @@
 
 namespace flightwatt::path {
 
-/// Places of a KML file, in its order.
-struct KmlPlaces {
-    std::vector<GeodeticPosition> places;
-    bool has_altitudes = false;  ///< any that is not 0
-    bool is_level = true;        ///< all are the same
+/// A place of a KML file, with the altitude that it states.
+struct KmlPlace {
+    GeodeticPosition place;
+    std::optional<double> altitude_m;
 };
 
 /// Parses a file as XML. Throws InputError with the hint.
 pugi::xml_document load_kml(std::string_view text, const std::string& file, const char* hint);
 
 /// Returns the places in <coordinates>, "longitude,latitude[,altitude] ...". Throws InputError for others.
-KmlPlaces kml_places(const pugi::xpath_node_set& coordinates, const std::string& file);
+std::vector<KmlPlace> kml_places(const pugi::xml_node& coordinates, const std::string& file);
 
 }  // namespace flightwatt::path
