@@ -330,6 +330,10 @@ class MissionFlight {
             } else {
                 reader.read(item, rounds_[i]);
                 ++i;
+                if (item.command != nav_return) continue;
+                if (i < mission_.items.size())
+                    reader.report(mission_.items[i], "it follows the return, with which the mission ends: not flown");
+                break;
             }
         }
         return reader.finish(mission_.where);

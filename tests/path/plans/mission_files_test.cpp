@@ -219,6 +219,19 @@ TEST(MissionFiles, FlyToTheLandingOfAPattern) {
     EXPECT_TRUE(plan.missing.empty());
 }
 
+/// Waypoints behind the return were flown, which no autopilot does.
+TEST(MissionFiles, EndWithTheReturn) {
+    const auto plan =
+        parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(20, 2, "0, 0, 0, 0, 0, 0, 0") +
+                           "," + item(16, 3, "0, 0, 0, null, 47.1, 8.0, 60")),
+                       "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 3U);
+    EXPECT_DOUBLE_EQ(plan.entries[2].geographic->latitude_deg, 47.0);
+    EXPECT_EQ(plan.not_flown,
+              std::vector<std::string>{"item 3: it follows the return, with which the mission ends: not flown"});
+    EXPECT_TRUE(plan.missing.empty());
+}
+
 TEST(MissionFiles, NameMovementsThatAreMissing) {
     const auto missing_of = [](const std::string& more) {
         return parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + more), "q.plan", {}).missing;
