@@ -51,9 +51,9 @@ Fields<PlanCheck> record_fields(const PlanCheck*) {
         field("fits", &R::fit, "yes, perhaps or no"),
         field("reason", &R::reason, "why it cannot be flown, or is uncertain; empty otherwise"),
         field("probability", &R::probability, "of keeping the reserve; null: unknown"),
-        field("probability_interval_95", &R::probability_95, "in new flights"),
+        field("probability_interval_95", &R::probability_95, "in new flights; null: unknown"),
         field("probability_required", &R::probability_required, "by --probability"),
-        field("length_m", &R::length_m, "over ground"),
+        field("length_m", &R::length_m, "over ground; null, as all of flown: unknown"),
         field("fails_at", &R::fails_at, "where the charge falls below the reserve, or the battery fails; null: not"),
         field("fails_at_s", &R::fails_at_s, "since lift-off"),
         field("flown", &R::flown, "the flight as modelled"),
@@ -127,15 +127,15 @@ void read_aircraft(const cli::StageCall& call, const CheckArguments& arguments, 
 std::string percent_text(double part) { return fmt::format("{:.1f}", units::percentage(part, 1.0)); }
 
 std::string answer_line(const PlanCheck& check) {
-    const auto reserve = fmt::format("{:g} %", check.flown.reserve_soc_percent);
     const auto start = fmt::format("{}: {}", check.plan, to_string(check.fit));
-    if (check.legs.empty()) return fmt::format("{}: {}", start, check.reason);
+    if (!check.flown) return fmt::format("{}: {}", start, check.reason);
+    const auto reserve = fmt::format("{:g} %", check.flown->reserve_soc_percent);
     if (!check.probability)
         return fmt::format("{}, {} the reserve of {} as modelled; {}", start,
-                           check.flown.keeps_reserve ? "keeps" : "misses", reserve, check.reason);
+                           check.flown->keeps_reserve ? "keeps" : "misses", reserve, check.reason);
     return fmt::format("{}, keeps the reserve of {} in {} of 100 flights (of new flights {} to {}; {:g} required){}",
-                       start, reserve, percent_text(*check.probability), percent_text(check.probability_95.low),
-                       percent_text(check.probability_95.high), units::percentage(check.probability_required, 1.0),
+                       start, reserve, percent_text(*check.probability), percent_text(check.probability_95->low),
+                       percent_text(check.probability_95->high), units::percentage(check.probability_required, 1.0),
                        check.reason.empty() ? "" : "; but " + check.reason);
 }
 
@@ -154,12 +154,12 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
     auto text = cli::wrapped(answer_line(check), columns) + "\n";
     std::vector<cli::AnswerLine> lines;
     const auto& flown = check.flown;
-    if (!check.legs.empty())
+    if (flown)
         lines.push_back({"Flight",
-                         fmt::format("{}, {:.2f} km, {:.3g} Wh; {}", duration_text(std::round(flown.duration_s)),
-                                     check.length_m / units::metre_per_kilometre, flown.energy_wh,
-                                     flown.feasible ? fmt::format("lands with {:.1f} %", *flown.final_soc_percent)
-                                                    : std::string("the battery does not last")),
+                         fmt::format("{}, {:.2f} km, {:.3g} Wh; {}", duration_text(std::round(flown->duration_s)),
+                                     *check.length_m / units::metre_per_kilometre, flown->energy_wh,
+                                     flown->feasible ? fmt::format("lands with {:.1f} %", *flown->final_soc_percent)
+                                                     : std::string("the battery does not last")),
                          ""});
     if (check.fails_at)
         lines.push_back(
@@ -168,7 +168,7 @@ std::string check_text(const cli::StageCall& call, const PlanCheck& check) {
              ""});
     for (const auto& remedy : check.remedies)
         lines.push_back({&remedy == &check.remedies.front() ? "Helps" : "", remedy_text(remedy), ""});
-    const bool is_missed = check.probability < check.probability_required || !check.flown.keeps_reserve;
+    const bool is_missed = check.probability < check.probability_required || !flown || !flown->keeps_reserve;
     if (is_missed && check.remedies.empty() && check.probability)
         lines.push_back({"Helps", "nothing that was tried: another airspeed, a part of the path, a larger pack", ""});
     if (!check.chosen.empty()) lines.push_back({"Chosen", fmt::format("{}", fmt::join(check.chosen, "; ")), ""});

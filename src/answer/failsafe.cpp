@@ -176,39 +176,46 @@ std::optional<FailsafeAction> make_action(const Fleet& fleet, bool is_return, do
 /// The way home, or why it is not known.
 struct WayHome {
     std::optional<double> distance_m = {};
-    double airspeed_m_per_s = 0.0;
-    double ground_speed_m_per_s = 0.0;
+    path::PathElement leg = {};
     path::Wind wind = {};
-    double course_deg = 0.0;
+    double airspeed_m_per_s = 0.0;
+    double duration_s = 0.0;
     std::string missing = {};
 };
 
 WayHome way_home(const FailsafeRequest& request) {
+    constexpr double least_m = 1.0;
     WayHome way;
     way.distance_m = request.home_distance_m ? request.home_distance_m : request.flown_distance_m;
     way.wind = request.wind;
-    way.course_deg = request.home_course_deg.value_or(0.0);
-    if (!request.home_course_deg) way.wind.from_deg = way.course_deg;
+    const double course_deg = request.home_course_deg.value_or(0.0);
+    if (!request.home_course_deg) way.wind.from_deg = course_deg;
     const auto& physical = request.model.physical;
     const double flown = physical ? physical->mean_airspeed_m_per_s : 0.0;
-    // A rotorcraft keeps its speed over ground, against the wind.
-    const double usual =
-        request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) + request.wind.speed_m_per_s : flown;
-    way.airspeed_m_per_s = request.airspeed_m_per_s.value_or(usual);
+    const double usual = request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) : flown;
+    way.leg.name = "the way home";
+    way.leg.shape = path::Leg{std::max(way.distance_m.value_or(0.0), least_m), course_deg};
+    way.leg.airspeed_m_per_s = request.airspeed_m_per_s.value_or(usual);
+    way.leg.keeps_ground_speed = request.model.is_rotorcraft && !request.airspeed_m_per_s;
     if (!way.distance_m) {
         way.missing = "the distance to home is not known; a flight with GPS shows it, --home-distance states it";
-    } else if (!(way.airspeed_m_per_s > 0.0)) {
+        return way;
+    }
+    if (!(way.leg.airspeed_m_per_s > 0.0)) {
         way.missing = "the model has no airspeed; --airspeed states that of the way home";
-    } else if (physical && !request.airspeed_m_per_s && usual > max_predicted_airspeed_m_per_s(*physical)) {
-        way.missing = fmt::format(
-            "{:.1f} m/s of airspeed are beyond what its flights show; --airspeed states a slower way home", usual);
-    } else if (const auto speed = ground_speed_m_per_s(way.airspeed_m_per_s, way.course_deg, way.wind)) {
-        way.ground_speed_m_per_s = *speed;
-    } else {
+        return way;
+    }
+    const auto home = compute_trajectory({{way.leg}}, way.wind, path::InfeasibleLegPolicy::crawl);
+    way.airspeed_m_per_s = home.pieces.front().motion.airspeed_m_per_s;
+    way.duration_s = home.duration_s;
+    if (!home.infeasible_elements.empty())
         way.missing = fmt::format(
             "{:.1f} m/s of airspeed make no way home in a wind of {:.1f} m/s; --airspeed states a faster one",
             way.airspeed_m_per_s, way.wind.speed_m_per_s);
-    }
+    else if (physical && !request.airspeed_m_per_s && way.airspeed_m_per_s > max_predicted_airspeed_m_per_s(*physical))
+        way.missing =
+            fmt::format("{:.1f} m/s of airspeed are beyond what its flights show; --airspeed states a slower way home",
+                        way.airspeed_m_per_s);
     return way;
 }
 
@@ -231,21 +238,15 @@ mechanical::ConstantPower measured_cruise(const mechanical::MechanicalModel& mod
 
 /// A mission of the way home and the landing.
 mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHome& way) {
-    constexpr double least_m = 1.0;
     mission::MissionSetup setup;
     setup.name = "return";
     setup.mechanical = request.model;
     setup.battery = request.battery;
     setup.duration_s[landing] = request.model.phases[landing].duration_s;
-    const double distance_m = std::max(way.distance_m.value_or(0.0), least_m);
     if (way.missing.empty()) {
-        path::PathElement leg;
-        leg.shape = path::Leg{distance_m, way.course_deg};
-        leg.airspeed_m_per_s = way.airspeed_m_per_s;
-        leg.name = "the way home";
         auto power = request.model.physical.value_or(mission::constant_cruise_power(request.model));
         if (request.model.physical) add_constant_power(power_beyond_straight_flight_w(request.model), power);
-        set_cruise_path(setup, {{{leg}}, way.wind, std::move(power)});
+        set_cruise_path(setup, {{{way.leg}}, way.wind, std::move(power)});
         if (!request.model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
         return setup;
     }
@@ -313,7 +314,7 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
         } else {
             add(Ground::assumption, fmt::format("power on the way home: {:.1f} W, the mean cruise of the flights, "
                                                 "whatever the airspeed; {:.1f} m/s over ground",
-                                                fleet.cruise_w, way.ground_speed_m_per_s));
+                                                fleet.cruise_w, *way.distance_m / way.duration_s));
         }
     }
     add(Ground::measured,
@@ -381,7 +382,7 @@ FailsafeCard make_failsafe_card(const FailsafeRequest& request) {
     card.low_missing = way.missing;
     if (way.missing.empty()) {
         card.home_distance_m = way.distance_m;
-        card.home_duration_s = *way.distance_m / way.ground_speed_m_per_s;
+        card.home_duration_s = way.duration_s;
         card.low = make_action(fleet, true, reserve_percent, request.probability);
         if (!card.low) card.low_missing = "the full pack does not suffice to return from there with the reserve";
     }

@@ -57,6 +57,8 @@ class PlanFlight {
         const auto file = plan.file.filename().string() + ".toml";  // in the working folder, and never written
         try {
             return mission::parse_mission(new_mission_toml(fresh), file, change.reading);
+        } catch (const mission::UnknownPowerError& error) {
+            throw mission::UnknownPowerError({plan.file.string()}, error.what(), error.hint());
         } catch (const InputError& error) {
             if (error.where().file != file) throw;
             throw InputError({plan.file.string()}, error.what(), error.hint());
@@ -121,7 +123,7 @@ void add_legs(const Flown& flown, PlanCheck& check) {
         leg.length_m += element.length_m.value_or(0.0);
         leg.energy_wh += units::wh_from_joule(element.mechanical_w * element.duration_s);
         leg.soc_percent = soc_at(flown.simulation.curve, start_s + element.duration_s);
-        check.length_m += element.length_m.value_or(0.0);
+        check.length_m = check.length_m.value_or(0.0) + element.length_m.value_or(0.0);
     }
 }
 
@@ -273,7 +275,8 @@ class Remedies {
     PlanCheck& check_;
 };
 
-/// Flies the plan in its wind; without a result where the wind alone forbids it, with the reason.
+/// Flies the plan in its wind; without a result where the wind alone forbids it, or makes its power unknown, with the
+/// reason.
 std::optional<Flown> fly_in_wind(const PlanFlight& flight, const PlanQuestion& question, PlanCheck& check) {
     try {
         return flight.fly(flight.mission({}, &check));
@@ -283,6 +286,7 @@ std::optional<Flown> fly_in_wind(const PlanFlight& flight, const PlanQuestion& q
         calm.aircraft.wind.reset();
         PlanFlight(calm).mission();  // throws what is wrong without wind, too
         check.reason = error.what();
+        if (dynamic_cast<const mission::UnknownPowerError*>(&error) != nullptr) check.fit = PlanFit::perhaps;
         return std::nullopt;
     }
 }
@@ -300,20 +304,20 @@ PlanCheck check_plan(const PlanQuestion& question) {
     if (flown) {
         check.flown = flown->summary();
         check.probability = flown->probability;
-        check.probability_95 = flown->probability_95;
+        if (flown->probability) check.probability_95 = flown->probability_95;
         check.notes = setup_of(flown->mission).notes;
         add_legs(*flown, check);
         find_failure(*flown, check);
         const bool is_known = flown->probability.has_value();
-        auto reasons = check.flown.uncertain;
+        auto reasons = check.flown->uncertain;
         if (!is_known)
             reasons.emplace_back("nothing shows how the power of flights differs: their probability is unknown");
         const bool is_sure = reasons.empty() && flight.suffices(*flown);
-        check.fit = is_sure ? PlanFit::yes : check.flown.keeps_reserve ? PlanFit::perhaps : PlanFit::no;
+        check.fit = is_sure ? PlanFit::yes : check.flown->keeps_reserve ? PlanFit::perhaps : PlanFit::no;
         check.reason = fmt::format("{}", fmt::join(reasons, "; "));
     }
     const bool suffices = flown && flight.suffices(*flown);
-    if (!suffices && (check.probability || !check.flown.keeps_reserve))
+    if (!suffices && (check.probability || !check.flown || !check.flown->keeps_reserve))
         Remedies(flight, question, check).add_all(flown);
     return check;
 }

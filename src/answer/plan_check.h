@@ -57,13 +57,12 @@ struct PlanCheck {
     PlanFit fit = PlanFit::no;
     std::string reason;  ///< why it cannot be flown, or is uncertain; may be empty
     double probability_required = 0.0;
-    std::optional<double> probability;  ///< of keeping the reserve; absent: unknown
-    Interval probability_95;            ///< of new flights
-    mission::MissionSummary flown;      ///< as modelled
-    double length_m = 0.0;              ///< of the path
-    std::optional<std::string>
-        fails_at;  ///< phase or leg at which the charge falls below the reserve, or the battery fails
-    std::optional<double> fails_at_s;  ///< since lift-off
+    std::optional<double> probability;             ///< of keeping the reserve; absent: unknown
+    std::optional<Interval> probability_95;        ///< of new flights
+    std::optional<mission::MissionSummary> flown;  ///< as modelled; absent, with all about the flight: unknown
+    std::optional<double> length_m;                ///< of the path
+    std::optional<std::string> fails_at;  ///< phase or leg where the charge is below the reserve, or the battery fails
+    std::optional<double> fails_at_s;     ///< since lift-off
     std::vector<PlanLeg> legs;
     std::vector<PlanRemedy> remedies;  ///< where the answer is not yes
     std::vector<std::string> chosen;   ///< what the plan leaves open

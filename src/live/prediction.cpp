@@ -263,13 +263,14 @@ std::optional<ConstantLoad> flight_home(const PredictionInput& input, double on_
     const auto position = position_at(input.path->flown(), on_path_s);
     const auto at = local_position_at(plan.path, position);
     const double distance_m = std::hypot(at.east_m, at.north_m);
-    const auto& element = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
-    const double power_w = mechanical::power_w(plan.power, {.airspeed_m_per_s = element.airspeed_m_per_s});
-    if (distance_m < 1.0) return ConstantLoad{power_w * power_factor, 0.0};
-    const double course_deg = std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad;
-    const auto speed = ground_speed_m_per_s(element.airspeed_m_per_s, course_deg, plan.wind);
-    if (!speed) return std::nullopt;
-    return ConstantLoad{power_w * power_factor, distance_m / *speed};
+    auto way = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
+    constexpr double least_m = 1.0;
+    way.shape = path::Leg{std::max(distance_m, least_m), std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad};
+    way.altitude_change_m = 0.0;
+    const auto home = compute_trajectory({{way}}, plan.wind, path::InfeasibleLegPolicy::crawl);
+    if (!home.infeasible_elements.empty()) return std::nullopt;
+    const double power_w = mechanical::power_w(plan.power, home.pieces.front().motion);
+    return ConstantLoad{power_w * power_factor, distance_m < least_m ? 0.0 : home.duration_s};
 }
 
 double duration_s(const std::vector<ConstantLoad>& loads) {

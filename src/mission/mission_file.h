@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/error.h"
 #include "mission/mission.h"
 #include "mission/mission_read_options.h"
 
@@ -10,9 +11,15 @@
 
 namespace flightwatt::mission {
 
+/// A path that can be flown, at airspeeds so far beyond those of the model's flights that its power is unknown.
+class UnknownPowerError : public InputError {
+    using InputError::InputError;
+};
+
 /// Reads a mission file (docs/missions.md). A mission with [plan], an adaptive policy, or components and no
 /// [[schedule]] is a planning problem, and its [[schedule]] is the fixed part; without an adaptive policy it is refused
-/// unless allow_unplanned. Paths are relative to the file. Throws InputError with the location of the error.
+/// unless allow_unplanned. Paths are relative to the file. Throws InputError with the location of the error, a path of
+/// unknown power UnknownPowerError.
 MissionVariant read_mission(const std::filesystem::path& path, const MissionReadOptions& reading = {});
 
 /// Reads a mission from text as read_mission(). `path` names it, and relative paths begin in its folder.

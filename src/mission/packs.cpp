@@ -158,7 +158,9 @@ class PackDivider {
         const auto there = local_position_at(*drawn_, position) - packs_.home;
         path::PathElement way;
         way.name = is_home ? way_home : way_to_path;
-        way.airspeed_m_per_s = elements[std::min(position.element, elements.size() - 1)].airspeed_m_per_s;
+        const auto& flown = elements[std::min(position.element, elements.size() - 1)];
+        way.airspeed_m_per_s = flown.airspeed_m_per_s;
+        way.keeps_ground_speed = flown.keeps_ground_speed;
         for (const auto& element : path_between(*drawn_, {}, position).elements)
             way.altitude_change_m += sign * element.altitude_change_m;
         const double course_deg = std::atan2(sign * there.east_m, sign * there.north_m) * units::degree_per_rad;

@@ -96,7 +96,6 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
             row.length_m = units::rad_from_turns(circles->turns) * circles->radius_m;
         }
         if (element.is_turn) row.kind = "turn";
-        if (hold != nullptr && hold->hovers) row.airspeed_m_per_s = plan.wind.speed_m_per_s;
         start_s += row.duration_s;
         row.load_factor = 0.0;
         elements.push_back(std::move(row));
@@ -104,6 +103,7 @@ std::vector<PathElementResult> path_element_results(const PlannedPath& plan) {
     for (const auto& [time_s, motion, index] : flown.pieces) {
         auto& row = elements[index];
         const double part = time_s / row.duration_s;
+        row.airspeed_m_per_s += part * (motion.airspeed_m_per_s - plan.path.elements[index].airspeed_m_per_s);
         row.climb_m_per_s += part * motion.climb_m_per_s;
         row.load_factor += part * motion.load_factor * motion.load_factor;
         row.mechanical_w += part * mechanical::power_w(plan.power, motion);
@@ -154,8 +154,9 @@ double part_far_beyond(const PlannedPath& plan, const PathTrajectory& flown) {
     constexpr double part_more = 0.2;      // of the airspeed: the drag is 44 % more
     constexpr double climb_m_per_s = 0.5;  // of a climb between level ends, as gusts make it
     constexpr double times_more_climb = 1.5;
-    const auto& [slowest, fastest] = plan.power.airspeed_m_per_s;
+    const auto& [slowest_flown, fastest] = plan.power.airspeed_m_per_s;
     const auto& [sink, climb] = plan.power.climb_m_per_s;
+    const double slowest = plan.turns && plan.turns->is_rotorcraft ? 0.0 : slowest_flown;  // all hover
     double beyond_s = 0.0;
     for (const auto& piece : flown.pieces) {
         const auto& motion = piece.motion;

@@ -43,7 +43,8 @@ struct Hold {
 struct PathElement {
     std::variant<Leg, Circles, Hold> shape;
     double airspeed_m_per_s = 0.0;
-    double altitude_change_m = 0.0;  ///< altitude at its end less that at its start
+    bool keeps_ground_speed = false;  ///< it is flown as a ground speed, in any wind, as by rotorcraft; not of holds
+    double altitude_change_m = 0.0;   ///< altitude at its end less that at its start
     /// Rate of the change of altitude, which begins at the start of the element, the rest being level; more than 0 in
     /// climb and descent. Absent: the change is spread evenly over the element.
     std::optional<double> climb_rate_m_per_s = std::nullopt;

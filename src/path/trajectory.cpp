@@ -62,6 +62,7 @@ class PathFlight {
         const auto* hold = std::get_if<Hold>(&element_->shape);
         return hold != nullptr && hold->hovers ? std::hypot(wind_.speed_m_per_s, climb_m_per_s) : airspeed();
     }
+    bool keeps_ground_speed() const { return element_->keeps_ground_speed && wind_.speed_m_per_s > 0.0; }
     double sign() const { return element_->altitude_change_m < 0.0 ? -1.0 : 1.0; }
     double height_m() const { return std::abs(element_->altitude_change_m); }
 
@@ -73,9 +74,10 @@ class PathFlight {
                "is a length or a speed in another unit?");
     }
 
-    void add(double time_s, double climb_m_per_s, double load_factor = 1.0) {
+    void add(double time_s, double climb_m_per_s) { add(time_s, {airspeed(climb_m_per_s), climb_m_per_s, 1.0}); }
+    void add(double time_s, const mechanical::FlightState& motion) {
         if (!(time_s > 0.0)) return;
-        flown_.pieces.push_back({time_s, {airspeed(climb_m_per_s), climb_m_per_s, load_factor}, index_});
+        flown_.pieces.push_back({time_s, motion, index_});
         flown_.duration_s += time_s;
     }
 
@@ -94,7 +96,7 @@ class PathFlight {
 
     template <typename Shape>
     void fly_shape(const Shape& shape) {
-        const GroundTrack track(shape, wind_);
+        const GroundTrack track(shape, wind_, keeps_ground_speed());
         const double least = track.min_horizontal_m_per_s();
         const double crawl_s = track.length_m() / (crawling_fraction * airspeed());
         const bool is_infeasible = airspeed() <= least * (1.0 + 1e-12);
@@ -121,12 +123,16 @@ class PathFlight {
             if (from_m >= interval.to_m - tolerance_m) break;
             const bool is_whole = from_m + piece_m <= interval.to_m - tolerance_m;
             if (is_whole && whole.size() == period) {
-                add(whole[k % period].time_s, interval.climb_m_per_s, whole[k % period].motion.load_factor);
+                add(whole[k % period].time_s, whole[k % period].motion);
                 continue;
             }
             const double to_m = is_whole ? from_m + piece_m : interval.to_m;
-            add(track.time_s(from_m, to_m, horizontal), interval.climb_m_per_s,
-                std::sqrt(track.load_factor_squared(from_m, to_m, horizontal)));
+            mechanical::FlightState motion{airspeed(), interval.climb_m_per_s,
+                                           std::sqrt(track.load_factor_squared(from_m, to_m, horizontal))};
+            if (keeps_ground_speed())
+                motion.airspeed_m_per_s =
+                    std::hypot(track.airspeed_m_per_s(from_m, to_m, horizontal), interval.climb_m_per_s);
+            add(track.time_s(from_m, to_m, horizontal), motion);
             if (is_whole) whole.push_back(flown_.pieces.back());
         }
     }
@@ -219,8 +225,11 @@ PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind, Infe
     return PathFlight(path, wind, infeasible_legs).fly();
 }
 
-std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind) {
-    const auto drift = solve_wind_triangle(airspeed_m_per_s, course_deg / units::degree_per_rad, velocity_of(wind));
+std::optional<double> ground_speed_m_per_s(const PathElement& element, double climb_m_per_s, double course_deg,
+                                           const Wind& wind) {
+    const double horizontal = horizontal_of(element.airspeed_m_per_s, climb_m_per_s);
+    if (element.keeps_ground_speed) return horizontal;
+    const auto drift = solve_wind_triangle(horizontal, course_deg / units::degree_per_rad, velocity_of(wind));
     return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
 }
 

@@ -32,16 +32,17 @@ enum class InfeasibleLegPolicy {
     crawl    ///< note it in `infeasible_elements`, and fly the element with a ground speed of 2 % of the airspeed
 };
 
-/// Flies a path in a steady wind: airspeed is held, the course over ground kept by a drift angle (docs/methods.md,
-/// Eqs. 40 and 41). Around circles ground speed and bank change, which is integrated. Throws InputError, placed at the
+/// Flies a path in a steady wind: airspeed, or the speed over ground, is held, the course over ground kept by a drift
+/// angle (docs/methods.md, Eqs. 40 and 41). Around circles ground speed and bank change, which is integrated. Throws InputError, placed at the
 /// element, for one that the wind forbids, that is too short or too steep for its climb, or for a path of more than
 /// 1e7 s.
 PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,
                                   InfeasibleLegPolicy infeasible_legs = InfeasibleLegPolicy::refuse);
 
-/// Returns the ground speed [m/s] of level flight on a course over ground in a wind; std::nullopt if no drift angle
-/// keeps the course, or the aircraft would be blown back.
-std::optional<double> ground_speed_m_per_s(double airspeed_m_per_s, double course_deg, const Wind& wind);
+/// Returns the horizontal ground speed [m/s] of an element on a course over ground in a wind, while it climbs or
+/// descends; std::nullopt if no drift angle keeps the course, or the aircraft would be blown back.
+std::optional<double> ground_speed_m_per_s(const PathElement& element, double climb_m_per_s, double course_deg,
+                                           const Wind& wind);
 
 /// Returns the path flown `times` times, from its end straight back to its start before each time but the first; the
 /// last time up to a fraction of its duration in the wind, and from there straight back if the path itself ends at its

@@ -244,8 +244,7 @@ class WingTurns {
             const auto* leg = std::get_if<Leg>(&shape);
             const double airspeed = elements_[i].airspeed_m_per_s;
             if (leg == nullptr || !rate || *rate >= airspeed) return false;
-            const auto speed =
-                ground_speed_m_per_s(std::sqrt(airspeed * airspeed - *rate * *rate), leg->course_deg, wind_);
+            const auto speed = ground_speed_m_per_s(elements_[i], *rate, leg->course_deg, wind_);
             return speed && std::abs(height_m) / *rate * *speed < leg->length_m;
         };
         const bool has_rate = std::ranges::any_of(shapes, fits);
@@ -332,10 +331,10 @@ class RotorcraftTurns {
     void slow_down(PathElement& element) {
         const auto* circles = std::get_if<Circles>(&element.shape);
         if (circles == nullptr) return;
+        const double wind = element.keeps_ground_speed ? 0.0 : wind_.speed_m_per_s;
         const double most =
-            std::sqrt(units::standard_gravity_m_per_s2 * circles->radius_m * tangent_of(limits_.max_bank_deg)) -
-            wind_.speed_m_per_s;
-        if (element.airspeed_m_per_s <= most || most <= wind_.speed_m_per_s) return;
+            std::sqrt(units::standard_gravity_m_per_s2 * circles->radius_m * tangent_of(limits_.max_bank_deg)) - wind;
+        if (element.airspeed_m_per_s <= most || most <= wind) return;
         if (notes_.empty())
             notes_.push_back(fmt::format(
                 "{}: circles of {:.4g} m are flown at {:.3g} m/s: {:.4g} m/s need a bank of more than {:g} degrees",
@@ -346,8 +345,7 @@ class RotorcraftTurns {
     double speed(std::size_t i) const {
         const auto* leg = std::get_if<Leg>(&elements_[i].shape);
         if (leg == nullptr) return elements_[i].airspeed_m_per_s;
-        return ground_speed_m_per_s(elements_[i].airspeed_m_per_s, leg->course_deg, wind_)
-            .value_or(elements_[i].airspeed_m_per_s);
+        return ground_speed_m_per_s(elements_[i], 0.0, leg->course_deg, wind_).value_or(elements_[i].airspeed_m_per_s);
     }
 
     /// The ground speed before each element, and at the end: the one that the acceleration permits at the corner, on a

@@ -35,6 +35,10 @@ double time_s(const PathElement& element, const Wind& wind = {}) {
     return compute_trajectory({{element}}, wind).duration_s;
 }
 
+std::optional<double> level_ground_speed(double airspeed, double course_deg, const Wind& wind) {
+    return ground_speed_m_per_s(element_of(Leg{}, airspeed), 0.0, course_deg, wind);
+}
+
 double climbed_m(const PathTrajectory& flown) {
     double sum_m = 0.0;
     for (const auto& piece : flown.pieces) sum_m += piece.time_s * piece.motion.climb_m_per_s;
@@ -43,13 +47,13 @@ double climbed_m(const PathTrajectory& flown) {
 
 TEST(Trajectory, GroundSpeedsFollowTheWindTriangle) {
     const Wind wind{5.0, 270.0};  // from the west
-    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 90.0, wind).value(), 18.0);
-    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 270.0, wind).value(), 8.0);
-    EXPECT_DOUBLE_EQ(ground_speed_m_per_s(13.0, 0.0, wind).value(), 12.0);  // 5, 12, 13
-    EXPECT_NEAR(ground_speed_m_per_s(13.0, 180.0, wind).value(), 12.0, 1e-12);
-    EXPECT_FALSE(ground_speed_m_per_s(5.0, 0.0, wind));
-    EXPECT_FALSE(ground_speed_m_per_s(5.0, 270.0, wind));
-    EXPECT_FALSE(ground_speed_m_per_s(6.0, 320.0, {8.0, 270.0}));
+    EXPECT_DOUBLE_EQ(level_ground_speed(13.0, 90.0, wind).value(), 18.0);
+    EXPECT_DOUBLE_EQ(level_ground_speed(13.0, 270.0, wind).value(), 8.0);
+    EXPECT_DOUBLE_EQ(level_ground_speed(13.0, 0.0, wind).value(), 12.0);  // 5, 12, 13
+    EXPECT_NEAR(level_ground_speed(13.0, 180.0, wind).value(), 12.0, 1e-12);
+    EXPECT_FALSE(level_ground_speed(5.0, 0.0, wind));
+    EXPECT_FALSE(level_ground_speed(5.0, 270.0, wind));
+    EXPECT_FALSE(level_ground_speed(6.0, 320.0, {8.0, 270.0}));
     EXPECT_NEAR(time_s(element_of(Leg{1200.0, 0.0}), wind), 100.0, 1e-9);
 }
 
@@ -61,11 +65,56 @@ TEST(Trajectory, GroundSpeedsAddUpAsVectors) {
     for (int i = 0; i < 200; ++i) {
         const Wind wind{speed(random), angle(random)};
         const double course_rad = angle(random) * pi / 180.0;
-        const double ground = ground_speed_m_per_s(12.5, course_rad * 180.0 / pi, wind).value();
+        const double ground = level_ground_speed(12.5, course_rad * 180.0 / pi, wind).value();
         const double from_rad = wind.from_deg * pi / 180.0;
         const double east = ground * std::sin(course_rad) + wind.speed_m_per_s * std::sin(from_rad);
         const double north = ground * std::cos(course_rad) + wind.speed_m_per_s * std::cos(from_rad);
         EXPECT_NEAR(std::hypot(east, north), 12.5, 1e-9);
+    }
+}
+
+PathElement over_ground(PathElement element) {
+    element.keeps_ground_speed = true;
+    return element;
+}
+
+/// A rotorcraft at 8 m/s over ground: with the wind, against it and across.
+TEST(Trajectory, KeptGroundSpeedsChangeTheAirspeedInsteadOfTheTime) {
+    const Wind wind{6.0, 180.0};  // from the south
+    for (const auto& [course_deg, airspeed] : {std::pair{0.0, 2.0}, {180.0, 14.0}, {90.0, 10.0}}) {
+        const auto flown = compute_trajectory({{over_ground(element_of(Leg{400.0, course_deg}, 8.0))}}, wind);
+        ASSERT_EQ(flown.pieces.size(), 1U);
+        EXPECT_NEAR(flown.duration_s, 50.0, 1e-9);
+        EXPECT_NEAR(flown.pieces.front().motion.airspeed_m_per_s, airspeed, 1e-9);
+    }
+    const auto blown = compute_trajectory({{over_ground(element_of(Leg{400.0, 180.0}, 5.0))}}, wind);
+    EXPECT_NEAR(blown.duration_s, 80.0, 1e-9) << "a wind above the speed does not forbid a leg";
+    const auto climbs = compute_trajectory({{over_ground(climbing(element_of(Leg{400.0, 180.0}, 5.0), 300.0))}}, wind);
+    EXPECT_NEAR(climbs.duration_s, 100.0, 1e-6) << "4 m/s over ground and 3 m/s up";
+    EXPECT_NEAR(climbs.pieces.front().motion.airspeed_m_per_s, std::hypot(10.0, 3.0), 1e-6);
+}
+
+/// Around whole circles the mean square of the airspeed is that of both speeds, over parts what small steps give.
+TEST(Trajectory, KeptGroundSpeedsAroundCirclesChangeTheAirspeedWithTheCourse) {
+    const Wind wind{3.0, 250.0};
+    for (const double turns : {2.0, 0.4}) {
+        const auto flown =
+            compute_trajectory({{over_ground(element_of(Circles{40.0, turns, false, 30.0}, 7.0))}}, wind);
+        const double length_m = turns * 2.0 * pi * 40.0;
+        EXPECT_NEAR(flown.duration_s, length_m / 7.0, 1e-9);
+        double flown_sum = 0.0;
+        for (const auto& piece : flown.pieces) {
+            flown_sum += piece.time_s * std::pow(piece.motion.airspeed_m_per_s, 2);
+            EXPECT_NEAR(piece.motion.load_factor, std::hypot(1.0, 49.0 / (gravity * 40.0)), 1e-9);
+        }
+        constexpr int steps = 10000;
+        double stepped_sum = 0.0;
+        for (int k = 0; k < steps; ++k) {
+            const double course_rad = 30.0 * pi / 180.0 - 2.0 * pi * turns * (k + 0.5) / steps;
+            const double to_rad = 70.0 * pi / 180.0;
+            stepped_sum += flown.duration_s / steps * (49.0 + 9.0 - 42.0 * std::cos(course_rad - to_rad));
+        }
+        EXPECT_NEAR(flown_sum, stepped_sum, 1e-5 * stepped_sum);
     }
 }
 
@@ -164,7 +213,7 @@ TEST(Trajectory, ClimbsSpreadOverALegArriveAtItsEnd) {
         const double climb = flown.pieces.front().motion.climb_m_per_s;
         const double horizontal = std::sqrt(13.0 * 13.0 - climb * climb);
         EXPECT_NEAR(climb * flown.duration_s, -120.0, 1e-7);
-        EXPECT_NEAR(flown.duration_s, 900.0 / ground_speed_m_per_s(horizontal, 0.0, wind).value(), 1e-7);
+        EXPECT_NEAR(flown.duration_s, 900.0 / level_ground_speed(horizontal, 0.0, wind).value(), 1e-7);
     }
     const auto circling = compute_trajectory({{climbing(element_of(Circles{80.0, 4.0}), 60.0)}}, {5.0, 0.0});
     EXPECT_NEAR(climbed_m(circling), 60.0, 1e-6);

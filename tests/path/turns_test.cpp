@@ -173,5 +173,14 @@ TEST(Turns, SlowARotorcraftOnNarrowCircles) {
     EXPECT_THAT(turned.notes, ElementsAre(HasSubstr("circles of 5 m are flown at 7 m/s")));
 }
 
+TEST(Turns, OfARotorcraftThatKeepsItsGroundSpeedAreThoseOfCalmAir) {
+    FlightPath drawn{{element_of(Leg{90.0, 0.0}), element_of(Leg{60.0, 120.0}), element_of(Circles{5.0, 2.0})}};
+    for (auto& element : drawn.elements) element.keeps_ground_speed = true;
+    const auto flown_s = [&](const Wind& wind) {
+        return compute_trajectory(fly_turns(drawn, wind, {.is_rotorcraft = true}).path, wind).duration_s;
+    };
+    EXPECT_NEAR(flown_s({9.0, 200.0}), flown_s({}), 1e-9);
+}
+
 }  // namespace
 }  // namespace flightwatt::path

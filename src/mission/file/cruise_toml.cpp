@@ -5,6 +5,7 @@
 #include "mission/file/named_file.h"
 #include "mission/file/planning_toml.h"
 #include "mission/file/takeoff_height.h"
+#include "mission/mission_file.h"
 #include "mission/planning/survey_layouts.h"
 #include "path/area.h"
 #include "path/cruise_path.h"
@@ -449,8 +450,10 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
         for (const auto& note : fence_notes(planned.fence, plan.path, *plan.origin))
             mission.notes.push_back("path: " + note);
     if (mission.mechanical && mission.mechanical->is_rotorcraft)
-        for (auto& element : plan.path.elements)
+        for (auto& element : plan.path.elements) {
+            element.keeps_ground_speed = true;
             if (auto* hold = std::get_if<path::Hold>(&element.shape)) hold->hovers = !hold->over_ground;
+        }
     if (packs) mission.packs->home = read_home(*packs, entries, defaults);
     if (reading.return_after_m) plan.path = out_and_back(plan.path, *reading.return_after_m, defaults.rates);
     return plan;
@@ -542,13 +545,17 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     const bool is_physical = mission.mechanical->physical.has_value();
     add_turns_of_induced_drag(plan.power);
     if (is_physical) add_unexplained_power(plan.power, mission);
-    for (const auto& element : plan.path.elements)
-        if (is_physical && !may_be_predicted(element.airspeed_m_per_s, plan.power, mission.mechanical->is_rotorcraft))
-            throw InputError(table->where(),
-                             fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name,
-                                         element.airspeed_m_per_s),
-                             near_flown_hint(plan.power));
-    compute_trajectory(plan.path, plan.wind);  // refuses what its turns would hide
+    const auto as_drawn = compute_trajectory(plan.path, plan.wind);  // refuses what its turns would hide
+    for (const auto& piece : as_drawn.pieces) {
+        const auto& element = plan.path.elements[piece.element];
+        const double airspeed = std::holds_alternative<path::Hold>(element.shape) ? element.airspeed_m_per_s
+                                                                                  : piece.motion.airspeed_m_per_s;
+        if (is_physical && !may_be_predicted(airspeed, plan.power, mission.mechanical->is_rotorcraft))
+            throw UnknownPowerError(
+                table->where(),
+                fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name, airspeed),
+                near_flown_hint(plan.power));
+    }
     plan.turns = read_turn_limits(*table, mission.mechanical->is_rotorcraft);
     auto turned = fly_turns(plan.path, plan.wind, *plan.turns);
     for (const auto& note : turned.notes) mission.notes.push_back("path: " + note);

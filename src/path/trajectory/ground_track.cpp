@@ -68,16 +68,21 @@ std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, doubl
     return WindTriangle{headway + along, headway / horizontal_m_per_s};
 }
 
-GroundTrack::GroundTrack(const Leg& leg, const Wind& wind)
-    : length_m_(leg.length_m), course_rad_(rad_of(leg.course_deg)), wind_(velocity_of(wind)) {}
+GroundTrack::GroundTrack(const Leg& leg, const Wind& wind, bool keeps_ground_speed)
+    : length_m_(leg.length_m),
+      course_rad_(rad_of(leg.course_deg)),
+      wind_(velocity_of(wind)),
+      keeps_ground_speed_(keeps_ground_speed) {}
 
-GroundTrack::GroundTrack(const Circles& circles, const Wind& wind)
+GroundTrack::GroundTrack(const Circles& circles, const Wind& wind, bool keeps_ground_speed)
     : length_m_(units::rad_from_turns(circles.turns) * circles.radius_m),
       course_rad_(rad_of(circles.start_course_deg)),
       curvature_rad_m_((circles.to_right ? 1.0 : -1.0) / circles.radius_m),
-      wind_(velocity_of(wind)) {}
+      wind_(velocity_of(wind)),
+      keeps_ground_speed_(keeps_ground_speed) {}
 
 double GroundTrack::min_horizontal_m_per_s() const {
+    if (keeps_ground_speed_) return 0.0;
     const double wind_m_per_s = std::hypot(wind_.east_m_per_s, wind_.north_m_per_s);
     if (curvature_rad_m_ != 0.0) return wind_m_per_s;
     const auto [along, across] = wind_along(course_rad_, wind_);
@@ -86,15 +91,29 @@ double GroundTrack::min_horizontal_m_per_s() const {
 
 double GroundTrack::time_s(double from_m, double to_m, double horizontal_m_per_s) const {
     if (!(to_m > from_m)) return 0.0;
+    if (keeps_ground_speed_) return (to_m - from_m) / horizontal_m_per_s;
     if (is_steady()) return (to_m - from_m) / steady_drift(horizontal_m_per_s).ground_speed_m_per_s;
     return turned(from_m, to_m, horizontal_m_per_s).time_s;
+}
+
+double GroundTrack::airspeed_m_per_s(double from_m, double to_m, double horizontal_m_per_s) const {
+    const double wind_m_per_s = std::hypot(wind_.east_m_per_s, wind_.north_m_per_s);
+    if (!keeps_ground_speed_ || wind_m_per_s == 0.0) return horizontal_m_per_s;
+    const double wind_rad = std::atan2(wind_.east_m_per_s, wind_.north_m_per_s);
+    const double from_rad = course_rad_ + curvature_rad_m_ * from_m - wind_rad;
+    const double turned_rad = curvature_rad_m_ * (to_m - from_m);
+    const double mean_cosine =
+        turned_rad == 0.0 ? std::cos(from_rad) : (std::sin(from_rad + turned_rad) - std::sin(from_rad)) / turned_rad;
+    const double square = horizontal_m_per_s * horizontal_m_per_s + wind_m_per_s * wind_m_per_s -
+                          2.0 * horizontal_m_per_s * wind_m_per_s * mean_cosine;
+    return std::sqrt(std::max(square, 0.0));
 }
 
 double GroundTrack::load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const {
     if (curvature_rad_m_ == 0.0 || !(to_m > from_m)) return 1.0;
     // Of a coordinated turn: tan(bank) = ground speed^2 / (g radius cos(drift)), and n^2 = 1 + tan^2.
     const double curvature_per_g = curvature_rad_m_ / units::standard_gravity_m_per_s2;
-    if (is_steady()) {
+    if (is_steady() || keeps_ground_speed_) {
         const double tangent = horizontal_m_per_s * horizontal_m_per_s * curvature_per_g;
         return 1.0 + tangent * tangent;
     }

@@ -20,23 +20,26 @@ struct WindTriangle {
     double cosine = 1.0;  ///< cosine of the angle between heading and course
 };
 
-/// Solves the wind triangle for the horizontal part of the airspeed; std::nullopt as ground_speed_m_per_s().
+/// Solves the wind triangle for the horizontal part of the airspeed; std::nullopt if it has no solution.
 std::optional<WindTriangle> solve_wind_triangle(double horizontal_m_per_s, double course_rad, const WindVelocity& wind);
 
-/// A leg or circles as lines over ground, measured in metres from their start.
+/// A leg or circles as lines over ground, measured in metres from their start, flown at a horizontal speed: an airspeed,
+/// or one that is kept over ground.
 class GroundTrack {
   public:
-    GroundTrack(const Leg& leg, const Wind& wind);
-    GroundTrack(const Circles& circles, const Wind& wind);
+    GroundTrack(const Leg& leg, const Wind& wind, bool keeps_ground_speed = false);
+    GroundTrack(const Circles& circles, const Wind& wind, bool keeps_ground_speed = false);
 
     double length_m() const { return length_m_; }
 
-    /// Returns the horizontal airspeed above which the whole track can be flown.
+    /// Returns the horizontal speed above which the whole track can be flown.
     double min_horizontal_m_per_s() const;
 
-    /// Returns the duration of the track between two distances from its start, at a horizontal airspeed above the
-    /// minimum.
+    /// Returns the duration of the track between two distances from its start, at a horizontal speed above the minimum.
     double time_s(double from_m, double to_m, double horizontal_m_per_s) const;
+
+    /// Returns the root of the mean square of the horizontal airspeed over that time.
+    double airspeed_m_per_s(double from_m, double to_m, double horizontal_m_per_s) const;
 
     /// Returns the mean square of the load factor over that time.
     double load_factor_squared(double from_m, double to_m, double horizontal_m_per_s) const;
@@ -67,6 +70,7 @@ class GroundTrack {
     double course_rad_ = 0.0;       ///< course at its start
     double curvature_rad_m_ = 0.0;  ///< change of the course per metre; 0: straight
     WindVelocity wind_;
+    bool keeps_ground_speed_ = false;
 };
 
 }  // namespace flightwatt::path

@@ -25,7 +25,9 @@ Summed summed(const Circles& circles, const Wind& wind, double from_m, double to
         const double along_m = from_m + (k + 0.5) * part_m;
         const double turned_rad = along_m / circles.radius_m * (circles.to_right ? 1.0 : -1.0);
         const double course_deg = circles.start_course_deg + turned_rad * 180.0 / std::acos(-1.0);
-        const double ground_m_per_s = ground_speed_m_per_s(airspeed_m_per_s, course_deg, wind).value();
+        PathElement element;
+        element.airspeed_m_per_s = airspeed_m_per_s;
+        const double ground_m_per_s = ground_speed_m_per_s(element, 0.0, course_deg, wind).value();
         const double drift_rad = std::asin(
             wind.speed_m_per_s * std::sin((wind.from_deg - course_deg) * std::acos(-1.0) / 180.0) / airspeed_m_per_s);
         const double tangent = ground_m_per_s * ground_m_per_s / (g * circles.radius_m * std::cos(drift_rad));
