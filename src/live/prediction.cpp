@@ -57,21 +57,56 @@ double seconds_on_path(const PredictionInput& input, const FlightProgress& flown
     return std::min(fix && fix->path_time_s ? *fix->path_time_s : flown.cruise_s(), path.duration_s);
 }
 
-/// A cruise that continues beyond the mission's, at its mean power until now.
-mechanical::RemainingCruise predict_overtime(const FlightProgress& flown, double overtime_s, Prediction& prediction,
-                                             Remarks& remarks) {
+double length_m(const path::LocalPosition& of) { return std::hypot(of.east_m, of.north_m); }
+
+/// The way from a place of the path to its start; std::nullopt where the wind is too strong.
+std::optional<path::TrajectorySegment> way_home(const path::PlannedPath& plan, const path::PathPosition& position,
+                                                const path::LocalPosition& away) {
+    constexpr double least_m = 1.0;
+    const auto at = local_position_at(plan.path, position);
+    const path::LocalPosition home{-at.east_m - away.east_m, -at.north_m - away.north_m};
+    auto way = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
+    way.shape =
+        path::Leg{std::max(length_m(home), least_m), std::atan2(home.east_m, home.north_m) * units::degree_per_rad};
+    way.altitude_change_m = 0.0;
+    const auto flown = compute_trajectory({{way}}, plan.wind, path::InfeasibleLegPolicy::crawl);
+    if (!flown.infeasible_elements.empty()) return std::nullopt;
+    auto segment = flown.pieces.front();
+    if (length_m(home) < least_m) segment.time_s = 0.0;
+    return segment;
+}
+
+/// A cruise that continues beyond the mission's, at its mean power until now; from away of the path's end the way home
+/// is still ahead.
+mechanical::RemainingCruise predict_overtime(const PredictionInput& input, const FlightProgress& flown,
+                                             double overtime_s, Prediction& prediction, Remarks& remarks) {
     mechanical::RemainingCruise rest;
     rest.measured_w = units::joule_from_wh(flown.cruise_energy_wh) / flown.cruise_s();
     rest.remaining_mean_w = rest.measured_w;
     prediction.overtime_s = std::max(overtime_s, 0.0);
-    remarks.warnings.push_back(
-        fmt::format("the mission's cruise was completed {:.0f} s ago: the charge at landing is that of a landing from "
-                    "now, and the time to the reserve is at the mean power of this cruise, {:.1f} W",
-                    *prediction.overtime_s, rest.measured_w));
+    std::string from = "a landing from now";
+    if (input.path && length_m(prediction.away) > 0.0) {
+        const auto& plan = input.path->plan();
+        const auto home = way_home(plan, {plan.path.elements.size(), 0.0}, prediction.away);
+        if (!home)
+            throw NoResultError(fmt::format("the wind is too strong for the way home, {:.0f} m from the path's end",
+                                            length_m(prediction.away)));
+        from = fmt::format("the way home, from {:.0f} m off the path's end, and a landing", length_m(prediction.away));
+        prediction.remaining_s = home->time_s;
+        auto ahead = predict_remaining_physical(plan.power, flown,
+                                                {term_values(home->motion, plan.power.load), prediction.remaining_s});
+        rest.energy = ahead.energy;
+        rest.gain = ahead.gain;
+        rest.expected_w = ahead.expected_w;
+    }
+    remarks.warnings.push_back(fmt::format(
+        "the mission's cruise was completed {:.0f} s ago: the charge at landing is that of {}, and the time "
+        "to the reserve is at the mean power of this cruise, {:.1f} W",
+        *prediction.overtime_s, from, rest.measured_w));
     return rest;
 }
 
-void remark_on(const PathFix& fix, double cruise_s, Remarks& remarks) {
+void remark_on(const PathFix& fix, double away_m, double cruise_s, Remarks& remarks) {
     if (!fix.path_time_s) {
         remarks.warnings.emplace_back(
             "the positions of this flight are not on the mission's path: its position on the path is by the time since "
@@ -82,7 +117,7 @@ void remark_on(const PathFix& fix, double cruise_s, Remarks& remarks) {
         remarks.warnings.push_back(fmt::format(
             "the flight is {:.0f} m from where it left the mission's path: predicted from there on, without "
             "the way back",
-            fix.distance_m));
+            away_m));
     }
     constexpr double min_noted_s = 30.0;
     const double ahead_s = *fix.path_time_s - cruise_s;
@@ -96,10 +131,13 @@ mechanical::RemainingCruise predict_along_path(const PredictionInput& input, con
                                                Remarks& remarks) {
     prediction.on_path_s = seconds_on_path(input, flown, fix, prediction.takeoff_s);
     prediction.is_from_position = fix && fix->path_time_s;
+    if (fix && fix->at && !(fix->is_on_path && fix->path_time_s))
+        prediction.away = *fix->at - local_position_at(input.path->plan().path,
+                                                       position_at(input.path->flown(), *prediction.on_path_s));
     const double path_s = input.path->flown().duration_s;
     if (!input.remaining_s && *prediction.on_path_s >= path_s)
-        return predict_overtime(flown, flown.cruise_s() - path_s, prediction, remarks);
-    if (fix) remark_on(*fix, flown.cruise_s(), remarks);
+        return predict_overtime(input, flown, flown.cruise_s() - path_s, prediction, remarks);
+    if (fix) remark_on(*fix, length_m(prediction.away), flown.cruise_s(), remarks);
     const auto rest = input.path->predict(flown, position_at(input.path->flown(), *prediction.on_path_s));
     if (rest.infeasible_fraction > 0.0) {
         remarks.warnings.push_back(fmt::format(
@@ -141,7 +179,7 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
     if (input.path) return predict_along_path(input, flown, fix, prediction, remarks);
     const double left_s =
         input.remaining_s ? *input.remaining_s - prediction.takeoff_s : input.cruise_s.value() - flown.cruise_s();
-    if (left_s < 0.0 && !input.remaining_s) return predict_overtime(flown, -left_s, prediction, remarks);
+    if (left_s < 0.0 && !input.remaining_s) return predict_overtime(input, flown, -left_s, prediction, remarks);
     prediction.remaining_s = std::max(0.0, left_s);
     if (!input.motion) return predict_phases(input, flown, prediction);
     auto model = input.model.physical.value();
@@ -255,22 +293,15 @@ PredictionInput unchecked_input(const mission::MissionSetup& setup) {
     return input;
 }
 
-/// The flight home from a time on the path; std::nullopt where the wind is too strong. Without a path the landing
-/// begins where the aircraft is.
-std::optional<ConstantLoad> flight_home(const PredictionInput& input, double on_path_s, double power_factor) {
+/// The flight home from a time on the path, or as far away from there as the aircraft is; std::nullopt where the wind is
+/// too strong. Without a path the landing begins where the aircraft is.
+std::optional<ConstantLoad> flight_home(const PredictionInput& input, double on_path_s, const path::LocalPosition& away,
+                                        double power_factor) {
     if (!input.path) return ConstantLoad{};
     const auto& plan = input.path->plan();
-    const auto position = position_at(input.path->flown(), on_path_s);
-    const auto at = local_position_at(plan.path, position);
-    const double distance_m = std::hypot(at.east_m, at.north_m);
-    auto way = plan.path.elements[std::min(position.element, plan.path.elements.size() - 1)];
-    constexpr double least_m = 1.0;
-    way.shape = path::Leg{std::max(distance_m, least_m), std::atan2(-at.east_m, -at.north_m) * units::degree_per_rad};
-    way.altitude_change_m = 0.0;
-    const auto home = compute_trajectory({{way}}, plan.wind, path::InfeasibleLegPolicy::crawl);
-    if (!home.infeasible_elements.empty()) return std::nullopt;
-    const double power_w = mechanical::power_w(plan.power, home.pieces.front().motion);
-    return ConstantLoad{power_w * power_factor, distance_m < least_m ? 0.0 : home.duration_s};
+    const auto home = way_home(plan, position_at(input.path->flown(), on_path_s), away);
+    if (!home) return std::nullopt;
+    return ConstantLoad{mechanical::power_w(plan.power, home->motion) * power_factor, home->time_s};
 }
 
 double duration_s(const std::vector<ConstantLoad>& loads) {
@@ -452,7 +483,7 @@ ReturnDeadline latest_return(const PredictionInput& input, const Prediction& pre
         ahead.front().duration_s = forecast_landing(*input.battery, now, ahead, cruise_w, input.limits).endurance_s;
     }
     const auto keeps_reserve_after = [&](double in_s) {
-        const auto home = flight_home(input, prediction.on_path_s.value_or(0.0) + in_s, power_factor);
+        const auto home = flight_home(input, prediction.on_path_s.value_or(0.0) + in_s, prediction.away, power_factor);
         if (!home) return false;
         const std::vector<ConstantLoad> loads{*home, landing};
         return forecast_landing(*input.battery, now, loads, 0.0, input.limits).keeps_reserve;

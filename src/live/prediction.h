@@ -54,6 +54,7 @@ struct Prediction {
     bool began_in_air = false;              ///< the lift-off was not received: `flown` counts from the first message
     std::optional<double> on_path_s = {};   ///< position on the path, as its planned time
     bool is_from_position = false;          ///< `on_path_s` is by the aircraft's positions, not by the time
+    path::LocalPosition away = {};          ///< the aircraft from there, once it has left the path
     double takeoff_s = 0.0;                 ///< expected rest of the take-off; 0 in cruise
     mechanical::EnergyEstimate takeoff;     ///< energy of that rest
     double remaining_s = 0.0;               ///< rest of the cruise

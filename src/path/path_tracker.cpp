@@ -181,8 +181,8 @@ class PathFilter {
     /// The grid point nearest to the last position, of those around the median: corrects the lag of the filter behind
     /// flights that are faster or slower than planned.
     double nearest_position() const;
-    /// The last position relative to a grid point.
-    LocalPosition offset_from(double position) const { return last_.at - origin_ - point_at(position).at; }
+    /// The last position, from the start of the path.
+    LocalPosition last_position() const { return last_.at - origin_; }
 
   private:
     void predict_step();
@@ -334,17 +334,14 @@ std::optional<PathFix> locate_on_path(const PathForecast& path, const flight::Fl
     if (observations.empty()) return std::nullopt;
     PathFilter filter(grid);
     for (const auto& observation : observations) filter.add_observation(observation);
+    const bool has_position = observations.back().is_known;
     PathFix fix;
+    if (has_position) fix.at = filter.last_position();
     if (filter.on_path_s() < std::max(min_on_path_s, min_on_path_fraction * filter.known_s())) return fix;
     fix.is_on_path = filter.is_on_path();
-    const bool has_position = observations.back().is_known;
     const double position = fix.is_on_path && has_position ? filter.nearest_position() : filter.median_position();
     const double last_s = cruise_start_s + static_cast<double>(observations.size() - 1) * grid.step_s;
     fix.path_time_s = std::clamp(position * grid.step_s + (fix.is_on_path ? until_s - last_s : 0.0), 0.0, duration_s);
-    if (has_position) {
-        const auto offset = filter.offset_from(position);
-        fix.distance_m = std::hypot(offset.east_m, offset.north_m);
-    }
     return fix;
 }
 

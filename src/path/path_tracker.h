@@ -11,7 +11,7 @@ namespace flightwatt::path {
 struct PathFix {
     std::optional<double> path_time_s = {};  ///< as planned time of the path; absent: no position is on it
     bool is_on_path = true;                  ///< false: the flight left the path at path_time_s
-    double distance_m = 0.0;                 ///< present distance from path_time_s
+    std::optional<LocalPosition> at = {};    ///< where the aircraft is, from the start of the path
 };
 
 /// Finds the position of a flight on its path, which begins where the cruise does, from the positions of the cruise up

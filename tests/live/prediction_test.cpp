@@ -307,6 +307,37 @@ TEST(TurnHome, SaysWhereThePathCanBeFlownAndWhereItIsTooLate) {
     EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "the landing counts";
 }
 
+/// The way home began on the path, wherever the aircraft was.
+TEST(TurnHome, CountsHowFarItHasLeftThePath) {
+    Trial trial;
+    trial.charge_for(150.0);
+    EXPECT_TRUE(trial.turn(100.0).latest_in_s) << "100 s from home";
+    trial.prediction.away = {600.0, 0.0};
+    EXPECT_TRUE(trial.turn(100.0).latest_in_s) << "117 s";
+    trial.prediction.away = {0.0, 600.0};
+    EXPECT_FALSE(trial.turn(100.0).latest_in_s) << "160 s";
+}
+
+/// A cruise beyond the mission's was predicted as a landing from now, 7 km away.
+TEST(TurnHome, OfACompletedPathIsTheWayFromWhereTheAircraftIs) {
+    auto input = input_from_model(model_of_high_and_low_flights(), "model.toml", 300.0);
+    input.remaining_s.reset();
+    input.model.physical = test::made_up_wing();
+    input.path = std::make_shared<path::PathForecast>(path::PlannedPath{out_and_on(), {}, *input.model.physical});
+    path::PathFix fix;
+    fix.path_time_s = 200.0;
+    Remarks remarks;
+    const auto there = predict_energy(input, after(25.0, 260.0), fix, remarks);
+    EXPECT_EQ(there.remaining_s, 0.0);
+    fix.is_on_path = false;
+    fix.at = {1000.0, 6000.0};  // the path ends 1 km north and 1 km east
+    const auto away = predict_energy(input, after(25.0, 260.0), fix, remarks);
+    EXPECT_NEAR(away.remaining_s, std::hypot(1000.0, 6000.0) / 10.0, 1e-6);
+    EXPECT_GT(away.remaining_energy.energy_wh, there.remaining_energy.energy_wh);
+    EXPECT_GT(away.overtime_s.value(), 50.0);
+    EXPECT_NE(remarks.warnings.back().find("that of the way home, from 5000 m off the path's end"), std::string::npos);
+}
+
 TEST(TurnHome, WithoutAPathItIsTheLatestLanding) {
     Trial trial;
     trial.prediction.landing_s = 50.0;

@@ -151,7 +151,9 @@ TEST(PathTracker, ADetourIsSeenAndThePathGoesOnWhereItWasLeft) {
     ASSERT_TRUE(at(290.0));
     EXPECT_FALSE(at(290.0)->is_on_path);
     EXPECT_NEAR(at(290.0)->path_time_s.value(), 230.0, 26.0) << "where it was left";
-    EXPECT_GT(at(290.0)->distance_m, 300.0);
+    const auto left = local_position_at(path, position_at(plan.flown(), *at(290.0)->path_time_s));
+    const auto away = at(290.0)->at.value() - left;
+    EXPECT_GT(std::hypot(away.east_m, away.north_m), 300.0);
     ASSERT_TRUE(at(390.0));
     EXPECT_TRUE(at(390.0)->is_on_path);
     EXPECT_NEAR(at(390.0)->path_time_s.value(), 270.0, 8.0);

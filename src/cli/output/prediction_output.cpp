@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -115,16 +116,22 @@ std::vector<ScoreRow> score_rows(const std::vector<mechanical::ValidatedFlight>&
 
 }  // namespace
 
-std::string text_of(const Prediction& prediction) {
-    const auto& [flown, began_in_air, on_path_s, is_sighted, takeoff_s, takeoff, remaining_s, overtime_s, by_motion,
-                 cruise, power_ahead, landing, landing_s, landing_sd_s, rest, interval, battery] = prediction;
-    const auto cruise_text =
-        overtime_s ? fmt::format("completed {} ago; so far {:.2f} W", duration_text(*overtime_s), cruise.measured_w)
-                   : fmt::format("{:.3f} Wh in {} more: {:.2f} W; {}", cruise.energy.energy_wh,
-                                 duration_text(remaining_s), cruise.remaining_mean_w, expectation_text(prediction));
-    const auto takeoff_text = takeoff_s > 0.0 ? fmt::format("take-off   {:.3f} Wh in {} more, as the model's flights\n",
-                                                            takeoff.energy_wh, duration_text(takeoff_s))
-                                              : std::string();
+std::string text_of(const Prediction& of) {
+    const auto& [flown, cruise, landing, rest] = std::tie(of.flown, of.cruise, of.landing, of.remaining_energy);
+    std::string cruise_text;
+    if (!of.overtime_s)
+        cruise_text = fmt::format("{:.3f} Wh in {} more: {:.2f} W; {}", cruise.energy.energy_wh,
+                                  duration_text(of.remaining_s), cruise.remaining_mean_w, expectation_text(of));
+    else if (of.remaining_s > 0.0)
+        cruise_text = fmt::format("completed {} ago; way home {:.3f} Wh in {}", duration_text(*of.overtime_s),
+                                  cruise.energy.energy_wh, duration_text(of.remaining_s));
+    else
+        cruise_text =
+            fmt::format("completed {} ago; so far {:.2f} W", duration_text(*of.overtime_s), cruise.measured_w);
+    const auto takeoff_text = of.takeoff_s > 0.0
+                                  ? fmt::format("take-off   {:.3f} Wh in {} more, as the model's flights\n",
+                                                of.takeoff.energy_wh, duration_text(of.takeoff_s))
+                                  : std::string();
     return fmt::format(
                "flown      {:.3f} Wh from {} at {:.1f} s to {:.1f} s of the log ({})\n"
                "{}"
@@ -132,12 +139,12 @@ std::string text_of(const Prediction& prediction) {
                "landing    {:.3f} Wh in {}{}\n"
                "remaining  {:.3f} Wh, 95 % interval {:.3f} to {:.3f} Wh\n"
                "total      {:.3f} Wh\n",
-               flown.energy_wh, began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
+               flown.energy_wh, of.began_in_air ? "the first message" : "lift-off", flown.lift_off_s, flown.until_s,
                duration_text(flown.until_s - flown.lift_off_s), takeoff_text, cruise_text, landing.energy_wh,
-               duration_text(landing_s),
-               landing_sd_s > 0.0 ? fmt::format(" (1 sd: {})", duration_text(landing_sd_s)) : "", rest.energy_wh,
-               interval.low_wh, interval.high_wh, flown.energy_wh + rest.energy_wh) +
-           battery_text(battery);
+               duration_text(of.landing_s),
+               of.landing_sd_s > 0.0 ? fmt::format(" (1 sd: {})", duration_text(of.landing_sd_s)) : "", rest.energy_wh,
+               of.interval.low_wh, of.interval.high_wh, flown.energy_wh + rest.energy_wh) +
+           battery_text(of.battery);
 }
 
 void warn_of(const StageCall& call, const live::Remarks& remarks) {

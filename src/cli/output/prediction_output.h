@@ -18,7 +18,7 @@ namespace flightwatt::cli {
 using live::Prediction;
 
 /// A line each for the energy so far, the remaining energy and the sum; two for the battery.
-std::string text_of(const Prediction& prediction);
+std::string text_of(const Prediction& of);
 
 /// Prints the diagnostics of a prediction on the standard error.
 void warn_of(const StageCall& call, const live::Remarks& remarks);
