@@ -376,7 +376,9 @@ std::string describe(const PackFlights& all) {
     return fmt::format("{} fly {} of {} of the cruise with the reserve; {}", text, duration_text(flown_s),
                        duration_text(all.setup.duration_s[Phase::cruise]),
                        all.needed ? fmt::format("{} packs would do", *all.needed)
-                                  : std::string("no number of packs would do: none gets further and lands with it"));
+                       : all.setup.packs->batteries.size() > 1
+                           ? std::string("the next pack gets no further and lands with it; another order may do")
+                           : std::string("no number of packs would do: none gets further and lands with it"));
 }
 
 }  // namespace flightwatt::mission

@@ -231,6 +231,20 @@ TEST(PlanCheck, OfARotorcraftTakesAsLongInWind) {
     EXPECT_THAT(stormy.reason, HasSubstr("26 m/s is beyond what the model's flights flew"));
 }
 
+TEST(PlanCheck, OfATimeThatTheSpeedDoesNotGiveIsUncertain) {
+    const auto file = test::scratch_dir() / "fast.csv";
+    const auto check_of = [&](int seconds) {
+        test::write_text(file, fmt::format("east_m,north_m,duration_s\n0,0,\n600,0,{}\n", seconds));
+        auto question = question_of(file);
+        question.plan.airspeed_m_per_s = 13.0;
+        return check_plan(question);
+    };
+    EXPECT_EQ(check_of(40).fit, PlanFit::yes) << "15 m/s";
+    const auto fast = check_of(20);
+    EXPECT_EQ(fast.fit, PlanFit::perhaps);
+    EXPECT_THAT(fast.reason, HasSubstr("600 m in 20 s are 30 m/s over ground"));
+}
+
 TEST(PlanCheck, RefusesAPathAndAnAreaInOneFile) {
     const auto file = test::scratch_dir() / "both.kml";
     test::write_text(file, R"(<?xml version="1.0"?><kml><Placemark><LineString><coordinates>1.27,43.46 1.27,43.50

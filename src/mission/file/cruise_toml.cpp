@@ -459,6 +459,20 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
     return plan;
 }
 
+/// Names as uncertain the first leg whose stated duration needs a speed that airspeed and wind do not give.
+void note_impossible_times(const path::PlannedPath& plan, MissionSetup& mission) {
+    constexpr double times_airspeed = 1.5;  // measured times have gusts, and a wind that is not stated
+    for (const auto& element : plan.path.elements) {
+        const auto* hold = std::get_if<path::Hold>(&element.shape);
+        if (hold == nullptr || !hold->over_ground) continue;
+        const double speed = hold->over_ground->length_m / hold->time_s;
+        if (speed <= times_airspeed * element.airspeed_m_per_s + plan.wind.speed_m_per_s) continue;
+        return mission.uncertain.push_back(fmt::format(
+            "{}: {:.4g} m in {:.4g} s are {:.3g} m/s over ground, and its power is that of {:.3g} m/s through the air",
+            element.name, hold->over_ground->length_m, hold->time_s, speed, element.airspeed_m_per_s));
+    }
+}
+
 }  // namespace
 
 std::optional<SurveyChoices> read_survey_choices(const TomlTable& mission_table) {
@@ -556,6 +570,7 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
                 fmt::format("{}: {:.4g} m/s is beyond what the model's flights flew", element.name, airspeed),
                 near_flown_hint(plan.power));
     }
+    note_impossible_times(plan, mission);
     plan.turns = read_turn_limits(*table, mission.mechanical->is_rotorcraft);
     auto turned = fly_turns(plan.path, plan.wind, *plan.turns);
     for (const auto& note : turned.notes) mission.notes.push_back("path: " + note);

@@ -153,6 +153,7 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     auto& model = *mission.mechanical;
     if (model.physical && knows_payload(*model.physical)) {
         note_payload_range(*payload_kg, *model.physical, mission);
+        if (mass_kg) mission.notes.emplace_back("takeoff_mass_kg is not used: the model knows what a payload takes");
         const auto usual = usual_motion(*model.physical);
         const double flown_w = power_w(*model.physical, usual);
         set_payload(*payload_kg, model.is_rotorcraft, *model.physical);

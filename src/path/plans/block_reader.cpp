@@ -207,7 +207,10 @@ class BlockReader {
         const double radius_m = radius(stage, attribute(stage, "radius"));
         const auto way = *first.place - second;
         const double round_m = 2.0 * std::hypot(way.east_m, way.north_m) + circumference_m(radius_m);
-        const double count = rounds(stage, {"NavOvalCount", "nav_oval_count"}, round_m, "the oval");
+        double count = rounds(stage, {"NavOvalCount", "nav_oval_count"}, round_m, "the oval");
+        const auto until = attribute(stage, "until");  // the counter is a whole number: above 3 are 4 rounds
+        if (const auto limit = find_limit(until, {"NavOvalCount", "nav_oval_count"}))
+            count = until.find(">=") == std::string::npos ? std::floor(*limit) + 1.0 : std::max(1.0, std::ceil(*limit));
         pattern(stage, first).oval(*first.place, second, radius_m, count);
     }
 

@@ -249,7 +249,7 @@ class ItemReader {
     void circle(const MissionItem& item, double amount, bool is_time) {
         const double stated_m = item.parameters[2];
         const bool is_stated = std::isfinite(stated_m) && std::abs(stated_m) >= min_radius_m;
-        if (!is_stated && is_time && settings_.is_rotorcraft) return fly_to(item, amount);
+        if (is_time && settings_.is_rotorcraft) return fly_to(item, amount);
         const double radius_m = is_stated ? stated_m : settings_.radius_m.value_or(assumed_radius_m(item));
         const double planned =
             settings_.airspeed_m_per_s > 0.0 || !speed_ ? settings_.airspeed_m_per_s : speed_->m_per_s;
@@ -286,7 +286,8 @@ class ItemReader {
         if (speed == of_settings) return airspeed_m_per_s_.reset();
         if (!(kind == 0.0 || kind == 1.0) || !(speed > 0.0 && speed <= max_m_per_s))
             return report(item, "the change of speed is not flown: it states no airspeed");
-        if (kind == 1.0) report(item, "the ground speed is flown as an airspeed, which it is in calm air");
+        if (kind == 1.0 && !settings_.is_rotorcraft)
+            report(item, "the ground speed is flown as an airspeed, which it is in calm air");
         airspeed_m_per_s_ = speed;
     }
 

@@ -203,7 +203,21 @@ TEST(MissionFiles, AssumeTheRadiusThatCirclesDoNotState) {
     const auto stated = plan_of(18, {.radius_m = 55.0});
     EXPECT_EQ(stated.entries.back().radius_m, std::optional(55.0));
     EXPECT_TRUE(stated.not_flown.empty());
+    const auto held = parse_qgc_plan(qgc(item(19, 3, "50, 0, 30, 1, 47.001, 8.0, 60")), "q.plan",
+                                     {.radius_m = {}, .is_rotorcraft = true});
+    EXPECT_EQ(held.entries.back().hold_s, std::optional(50.0)) << "its radius is that of wings";
+    EXPECT_FALSE(held.entries.back().circles);
     EXPECT_EQ(plan_of(19, {.radius_m = {}, .is_rotorcraft = true}).entries.back().hold_s, std::optional(50.0));
+}
+
+TEST(MissionFiles, FlyAGroundSpeedOfWingsAsAnAirspeed) {
+    for (const bool is_rotorcraft : {false, true}) {
+        const auto plan = parse_qgc_plan(
+            qgc(item(178, 2, "1, 9, -1, 0, 0, 0, 0") + "," + item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60")), "q.plan",
+            {.radius_m = {}, .is_rotorcraft = is_rotorcraft});
+        EXPECT_EQ(plan.entries.back().airspeed_m_per_s, std::optional(9.0));
+        EXPECT_EQ(plan.not_flown.empty(), is_rotorcraft);
+    }
 }
 
 TEST(MissionFiles, FlyToTheLandingOfAPattern) {
