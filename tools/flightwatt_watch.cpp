@@ -111,7 +111,15 @@ class MissionFromLink {
         if (!waiting_) return;
         const auto sender = message.text.substr(0, message.text.find(' '));
         auto& mission = missions_.try_emplace(sender, identity_.first, identity_.second).first->second;
+        const bool was_outdated = mission.is_outdated();
         if (mission.receive(message)) unread_.insert(sender);
+        if (mission.is_outdated() && !was_outdated)
+            cli::warn(
+                call_,
+                fmt::format("another mission was uploaded to aircraft {}: the prediction is of the former "
+                            "one until the new one is read{}",
+                            sender,
+                            arguments_.requests_mission ? "" : ", by a ground station; --request-mission asks for it"));
     }
 
     /// Returns the input of predictions of this aircraft, where it changes: by its mission, if that is new.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +17,7 @@ constexpr std::size_t max_items = 10'000;
 constexpr double units_per_degree = 1e7;
 constexpr double waypoint_command = 16.0;
 constexpr double frame_above_sea = 0.0;
+constexpr double no_place = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
 
@@ -35,15 +37,25 @@ bool LinkMission::receive(const IncomingMessage& message) {
     } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
         count_ = static_cast<std::size_t>(of("count"));
         items_.clear();  // those of another mission
+    } else if (name == "MISSION_ACK" && of("type") == 0.0 && !(of("mission_type") > 0.0)) {
+        is_outdated_ = !whole_.empty();
+        count_.reset();
+        items_.clear();
     } else if (name == "MISSION_ITEM_INT" && of("seq") < max_items && !(of("mission_type") > 0.0)) {
-        items_[static_cast<std::size_t>(of("seq"))] = {
-            of("frame"),
-            of("command"),
-            {of("param1"), of("param2"), of("param3"), of("param4"), of("x") / units_per_degree,
-             of("y") / units_per_degree, of("z")}};
+        const bool has_place = of("x") != no_place && of("y") != no_place;
+        Item item{of("frame"),
+                  of("command"),
+                  {of("param1"), of("param2"), of("param3"), of("param4"), has_place ? of("x") / units_per_degree : 0.0,
+                   has_place ? of("y") / units_per_degree : 0.0, of("z")}};
+        for (auto& value : item.parameters)
+            if (!std::isfinite(value)) value = 0.0;
+        items_[static_cast<std::size_t>(of("seq"))] = item;
     }
-    if (!is_whole() || items_ == whole_) return false;
+    if (!is_whole()) return false;
+    is_outdated_ = false;
+    if (items_ == whole_ && whole_has_home_ == home_.has_value()) return false;
     whole_ = items_;
+    whole_has_home_ = home_.has_value();
     return true;
 }
 
@@ -68,13 +80,15 @@ std::vector<std::string> LinkMission::requests(double now_s) {
 std::string LinkMission::waypoints() const {
     std::string text = "QGC WPL 110\n";
     const auto add = [&](std::size_t number, const Item& item) {
-        auto parameters = item.parameters;
-        for (auto& value : parameters)
-            if (!std::isfinite(value)) value = 0.0;
-        text += fmt::format("{}\t0\t{}\t{}\t{}\t1\n", number, item.frame, item.command, fmt::join(parameters, "\t"));
+        text +=
+            fmt::format("{}\t0\t{}\t{}\t{}\t1\n", number, item.frame, item.command, fmt::join(item.parameters, "\t"));
     };
     if (!is_ardupilot_) {
-        const auto& first = whole_.begin()->second.parameters;
+        const auto has_place = [](const auto& item) {
+            return item.second.parameters[4] != 0.0 || item.second.parameters[5] != 0.0;
+        };
+        const auto placed = std::ranges::find_if(whole_, has_place);
+        const auto& first = (placed == whole_.end() ? whole_.begin() : placed)->second.parameters;
         const auto home = home_.value_or(std::array{first[4], first[5], 0.0});
         add(0, {frame_above_sea, waypoint_command, {0.0, 0.0, 0.0, 0.0, home[0], home[1], home[2]}});
     }

@@ -25,6 +25,8 @@ class LinkMission {
     /// Returns the packets that ask for what is missing, at most once a second on a clock that does not go back; none
     /// before the aircraft was heard, and once the mission is whole.
     std::vector<std::string> requests(double now_s);
+    /// Returns whether another mission was uploaded since, which is not whole yet.
+    bool is_outdated() const { return is_outdated_; }
     /// Returns the whole mission as a file of waypoints ("QGC WPL 110"), with its home.
     std::string waypoints() const;
 
@@ -45,6 +47,8 @@ class LinkMission {
     std::optional<std::size_t> count_;
     std::map<std::size_t, Item> items_;
     std::map<std::size_t, Item> whole_;  ///< the last whole mission
+    bool whole_has_home_ = false;
+    bool is_outdated_ = false;
     double asked_s_ = -1.0;
 };
 

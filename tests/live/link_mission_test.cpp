@@ -3,6 +3,8 @@
 #include "helpers/mavlink_packets.h"
 #include "telemetry/mavlink_decoder.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -87,6 +89,57 @@ TEST(LinkMission, HasTheHomeOfOtherAutopilotsBeforeTheFirstItem) {
     mission.receive(message_of(count_of(vehicle, 1)));
     EXPECT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.01, 50.0F))));
     EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t0\t16\t0\t0\t0\t0\t47\t9\t488\t1\n1\t0\t3\t16\t"));
+}
+
+/// A mission that was uploaded later stayed unread.
+TEST(LinkMission, IsReadAgainAfterAnUpload) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat()));
+    mission.receive(message_of(count_of(vehicle, 1)));
+    ASSERT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F))));
+    ASSERT_THAT(asked(mission, 1.0), IsEmpty());
+    const auto acknowledge = [&](const char* type) {
+        mission.receive(message_of(vehicle.packet(47, "\xF5\xBF" + std::string(type, 1))));
+    };
+    acknowledge("\x05");
+    EXPECT_FALSE(mission.is_outdated()) << "it was refused";
+    acknowledge("\0");
+    EXPECT_TRUE(mission.is_outdated());
+    EXPECT_THAT(asked(mission, 2.0), ElementsAre("MISSION_REQUEST_LIST"));
+    mission.receive(message_of(count_of(vehicle, 1)));
+    EXPECT_TRUE(mission.is_outdated());
+    EXPECT_TRUE(mission.receive(message_of(item(vehicle, 0, 48.0, 0.0F))));
+    EXPECT_FALSE(mission.is_outdated());
+}
+
+/// The yaw of PX4's items is NaN, and a take-off has no place: the mission was new at each message, its home at 215 degrees.
+TEST(LinkMission, OfPx4HasItemsWithoutYawAndPlace) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    const auto add = [&](std::uint16_t seq, std::int32_t x, std::int32_t y) {
+        return mission.receive(message_of(
+            vehicle.packet(73, little_endian(0.0F) + little_endian(0.0F) + little_endian(0.0F) +
+                                   little_endian(std::numeric_limits<float>::quiet_NaN()) + little_endian(x) +
+                                   little_endian(y) + little_endian(30.0F) + little_endian(seq) +
+                                   little_endian(std::uint16_t{16}) + std::string("\xF5\xBF\x03\x00\x01", 5))));
+    };
+    constexpr auto nowhere = std::numeric_limits<std::int32_t>::max();
+    mission.receive(message_of(vehicle.heartbeat(2, 12)));
+    mission.receive(message_of(count_of(vehicle, 2)));
+    add(0, nowhere, nowhere);
+    EXPECT_TRUE(add(1, 470'000'000, 80'000'000));
+    EXPECT_FALSE(add(1, 470'000'000, 80'000'000));
+    EXPECT_EQ(mission.waypoints(),
+              "QGC WPL 110\n"
+              "0\t0\t0\t16\t0\t0\t0\t0\t47\t8\t0\t1\n"
+              "1\t0\t3\t16\t0\t0\t0\t0\t0\t0\t30\t1\n"
+              "2\t0\t3\t16\t0\t0\t0\t0\t47\t8\t30\t1\n");
+    EXPECT_TRUE(mission.receive(message_of(
+        vehicle.packet(242, little_endian(std::int32_t{460'000'000}) + little_endian(std::int32_t{90'000'000}) +
+                                little_endian(std::int32_t{488'000}) + std::string(40, '\0')))))
+        << "its home is known now";
+    EXPECT_THAT(mission.waypoints(), HasSubstr("\t46\t9\t488\t"));
 }
 
 TEST(LinkMission, PassesOverFencesAndWhatIsNoPacket) {

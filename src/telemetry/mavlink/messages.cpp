@@ -48,6 +48,8 @@ constexpr std::array definitions{
     Definition{43, "MISSION_REQUEST_LIST", "uint8_t target_system, target_component; + uint8_t mission_type"},
     Definition{44, "MISSION_COUNT",
                "uint16_t count; uint8_t target_system, target_component; + uint8_t mission_type; uint32_t opaque_id"},
+    Definition{47, "MISSION_ACK",
+               "uint8_t target_system, target_component, type; + uint8_t mission_type; uint32_t opaque_id"},
     Definition{51, "MISSION_REQUEST_INT",
                "uint16_t seq; uint8_t target_system, target_component; + uint8_t mission_type"},
     Definition{73, "MISSION_ITEM_INT",
