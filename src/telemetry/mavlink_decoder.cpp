@@ -82,8 +82,7 @@ void MavlinkDecoder::forward(const MavlinkFrame& frame, std::string_view entry, 
     const auto sender = fmt::format("{}", frame.system);
     state.values.clear();
     if (const auto wanted = state.wanted.find(name); wanted != state.wanted.end())
-        for (const auto field : wanted->second)
-            state.values.push_back(frame.message->layout.fields[field].number(frame.payload));
+        for (const auto field : wanted->second) state.values.push_back(value_of(frame, field));
     std::optional<double> unix_s;
     if (is_tlog_) unix_s = static_cast<double>(tlog_time_us(entry)) / us_per_s;
     on_message({sender, name, state.values, entry.substr(is_tlog_ ? tlog_time_bytes : 0, frame.bytes), unix_s});

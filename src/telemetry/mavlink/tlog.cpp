@@ -86,8 +86,7 @@ class Vehicle {
         const auto ticks = static_cast<double>(static_cast<std::int64_t>(entry.time_us - start_us_));
         const double time_s = ticks / us_per_s;
         add_facts(frame, time_s);
-        rows_.add(layout, time_s, offset,
-                  [&](std::size_t field) { return layout.fields[field].number(frame.payload); });
+        rows_.add(layout, time_s, offset, [&](std::size_t field) { return value_of(frame, field); });
     }
 
     void skip(std::size_t offset, std::size_t bytes) { rows_.skip(offset, bytes); }

@@ -3,6 +3,12 @@
 #include <set>
 
 namespace flightwatt::telemetry {
+namespace {
+
+constexpr int first_battery = 180;
+constexpr int second_battery = 181;
+
+}  // namespace
 
 bool is_autopilot(const MavlinkFrame& heartbeat) {
     constexpr double no_autopilot = 8.0;
@@ -21,10 +27,15 @@ void add_autopilot(const MavlinkFrame& heartbeat, std::map<int, Autopilot>& auto
 }
 
 bool is_of_vehicle(const MavlinkFrame& frame, int component) {
-    constexpr int first_battery = 180;
-    constexpr int last_battery = 181;
-    const bool is_battery = frame.component >= first_battery && frame.component <= last_battery;
+    const bool is_battery = frame.component == first_battery || frame.component == second_battery;
     return frame.component == component || (is_battery && frame.id == mavlink_message("BATTERY_STATUS").id);
+}
+
+double value_of(const MavlinkFrame& frame, std::size_t field) {
+    const auto& layout = frame.message->layout;
+    const double value = layout.fields[field].number(frame.payload);
+    const bool is_second = frame.component == second_battery && layout.name == "BATTERY_STATUS";
+    return is_second && value == 0.0 && layout.fields[field].name == "id" ? 1.0 : value;
 }
 
 }  // namespace flightwatt::telemetry

@@ -2,6 +2,7 @@
 
 #include "telemetry/mavlink/frames.h"
 
+#include <cstddef>
 #include <map>
 
 namespace flightwatt::telemetry {
@@ -20,5 +21,9 @@ void add_autopilot(const MavlinkFrame& heartbeat, std::map<int, Autopilot>& auto
 
 /// Returns whether a message is of the autopilot `component` of its system, or BATTERY_STATUS of a smart battery.
 bool is_of_vehicle(const MavlinkFrame& frame, int component);
+
+/// Returns the value of a field of a known message; the id of a second smart battery (component 181) that calls itself
+/// the first, 0, is 1.
+double value_of(const MavlinkFrame& frame, std::size_t field);
 
 }  // namespace flightwatt::telemetry

@@ -70,6 +70,19 @@ TEST(Tlog, LeavesOtherComponentsOfTheVehicleOutExceptItsBattery) {
 }
 
 // A gimbal whose heartbeat leaves its type out comes first.
+/// Half of the energy was lost without a word.
+TEST(Tlog, TwoSmartBatteriesOfOneIdAreTwo) {
+    test::MavlinkSender autopilot{1, 1};
+    test::MavlinkSender first{1, 180};
+    test::MavlinkSender second{1, 181};
+    const auto log = test::tlog_entry(0, autopilot.heartbeat()) +
+                     test::tlog_entry(1, first.battery({4'000, 4'000}, 100, 5)) +
+                     test::tlog_entry(2, second.battery({4'000, 4'000}, 100, 5));
+    const auto logs = read_tlog(log, "x.tlog", {{"BATTERY_STATUS", {"id"}}});
+    const auto* table = logs.front().log.senders.front().table("BATTERY_STATUS");
+    EXPECT_THAT(table->column("id")->values, ElementsAre(0.0, 1.0));
+}
+
 TEST(Tlog, ANamedAutopilotGoesBeforeAGenericHeartbeat) {
     test::MavlinkSender gimbal{1, 154};
     for (const auto& [component, autopilot] : {std::pair<std::uint8_t, std::uint8_t>{1, 0}, {7, 3}}) {
