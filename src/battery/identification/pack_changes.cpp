@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "base/units.h"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -43,8 +44,8 @@ RestMask rests_of(const PackRecord& record) {
     return mask;
 }
 
-/// Relative rise of the resting voltage at sample `at`; 0 if not known.
-double step_up(const PackRecord& record, const RestMask& mask, std::size_t at, double from_s) {
+/// Relative change of the resting voltage at sample `at`; 0 if not known.
+double step_at(const PackRecord& record, const RestMask& mask, std::size_t at, double from_s) {
     std::vector<double> before;
     std::vector<double> after;
     for (std::size_t i = at; i-- > 0 && before.size() < compared_samples;) {
@@ -94,18 +95,20 @@ std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std
     for (std::size_t i = 1; i < record.time_s.size(); ++i) {
         const bool reset = is_reset(logged_ah, i);
         const bool between_loads = mask.resting[i] && mask.since_load_s[i] > 0.0 && i < mask.last_load;
-        const double rise = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
+        const double change = (record.voltage_v[i] - record.voltage_v[i - 1]) / record.voltage_v[i - 1];
         // The step is estimated from all samples around it; it is where two neighbours differ by most of it.
         double step = 0.0;
-        if (between_loads && rise > late_step / 2.0 && stands(record.time_s[i])) {
-            step = step_up(record, mask, i, reset ? 0.0 : settled_s);
-            if (const double early = step_up(record, mask, i, recovery_s); early > early_step) step = early;
+        if (between_loads && std::abs(change) > late_step / 2.0 && stands(record.time_s[i])) {
+            step = step_at(record, mask, i, reset ? 0.0 : settled_s);
+            if (const double early = step_at(record, mask, i, recovery_s); early > early_step) step = early;
         }
-        if (rise > step / 2.0 && step > late_step) {
+        const bool rises = change > step / 2.0 && step > late_step;
+        const bool falls = change < step / 2.0 && -step > (reset ? late_step : early_step);  // as electronics load it
+        if (rises || falls) {
             notes.push_back(
-                fmt::format("the pack was changed at {:.0f} s: the voltage rises from {:.2f} to {:.2f} V at "
+                fmt::format("the pack was changed at {:.0f} s: the voltage {} from {:.2f} to {:.2f} V at "
                             "rest{}; its discharges are separated",
-                            record.time_s[i], record.voltage_v[i - 1], record.voltage_v[i],
+                            record.time_s[i], rises ? "rises" : "falls", record.voltage_v[i - 1], record.voltage_v[i],
                             reset ? " and the charge counter is reset" : ""));
             starts.push_back(i);
             missing_ah = 0.0;

@@ -24,8 +24,8 @@ std::vector<double> integrated_charge_ah(const std::vector<double>& time_s, cons
 
 /// The record split where a pack was changed at rest between two loads, while the aircraft `stands` at that time [s]:
 /// where the voltage rises by 3 % between medians of five samples, later than 5 s after the load; or by 1 % later than
-/// 15 s after it, or at a reset of the charge counter. A counter reset without such a step (by the autopilot) is
-/// corrected with the current's integral. `notes` reports both.
+/// 15 s after it, or at a reset of the charge counter; or where it falls by 3 %, or by 1 % at such a reset. A counter
+/// reset without a step (by the autopilot) is corrected with the current's integral. `notes` reports both.
 std::vector<PackRecord> split_at_pack_changes(PackRecord record, std::vector<std::string>& notes,
                                               const std::function<bool(double)>& stands);
 

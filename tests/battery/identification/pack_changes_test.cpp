@@ -18,12 +18,13 @@ struct TwoFlights {
     bool new_pack = true;
     bool counter_begins_anew = true;
     bool counts = true;
+    double missing_ah = 0.0;  ///< of the second, where the first pack flies again or a new one begins
 };
 
 test::SampleColumns two_flights(const TwoFlights& how) {
     auto columns = test::discharge_columns(test::known_pack(), {}, 11);
     test::SyntheticDischarge second;
-    if (!how.new_pack) second.initial_charge_ah = columns.charge_ah.back();
+    second.initial_charge_ah = how.missing_ah + (how.new_pack ? 0.0 : columns.charge_ah.back());
     const auto more = test::discharge_columns(test::known_pack(), second, 12);
     const double later_s = columns.time_s.back() + 60.0;
     const double counted_ah = how.counter_begins_anew ? 0.0 : columns.charge_ah.back();
@@ -55,6 +56,16 @@ TEST(PackChanges, AreToldByVoltageWithAndWithoutACounter) {
         // One discharge of both had made of the two packs one that holds twice as much.
         EXPECT_NEAR(records[1].charge_ah.back(), records[0].charge_ah.back(), 0.2 * records[0].charge_ah.back());
     }
+}
+
+/// The first pack's charge was taken for that of an emptier one.
+TEST(PackChanges, AreToldByAVoltageThatFalls) {
+    const auto first_ah = records_of({}).records[0].charge_ah.back();
+    const auto [records, notes] = records_of({true, true, true, first_ah + 0.6});
+    ASSERT_EQ(records.size(), 2U);
+    EXPECT_THAT(notes, ElementsAre(HasSubstr("the voltage falls from")));
+    EXPECT_NEAR(records[1].resting_voltage_v, open_circuit_voltage_v(test::known_pack(), 100.0), 2.0);
+    EXPECT_LT(records[1].resting_voltage_v, records[0].resting_voltage_v - 0.2);
 }
 
 TEST(PackChanges, AreNoneInAGlide) {
