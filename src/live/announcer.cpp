@@ -13,11 +13,14 @@ namespace {
 
 constexpr std::size_t text_bytes = 50;  // of a STATUSTEXT
 
-/// The text as far as it fits, to the end of a word.
-std::string fitting(std::string text) {
-    if (text.size() <= text_bytes) return text;
-    const auto space = text.rfind(' ', text_bytes);
-    return text.substr(0, space == std::string::npos ? text_bytes : space);
+/// What an alarm asks for, as far as it fits behind the prefix: without its reason, "Land now: the reserve ...", else to
+/// the end of a word.
+std::string fitting(const std::string& prefix, const std::string& action) {
+    const auto bytes = text_bytes - prefix.size();
+    if (action.size() <= bytes) return prefix + action;
+    const auto reason = action.rfind(": ", bytes);
+    const auto end = reason == std::string::npos ? action.rfind(' ', bytes) : reason;
+    return prefix + action.substr(0, end == std::string::npos ? bytes : end);
 }
 
 double severity_of(std::string_view grade) {
@@ -63,10 +66,10 @@ void Announcer::add_texts(const LiveState& state, double now_s, std::vector<std:
         const bool is_worse = last.grade.empty() || grade == "alarm";
         if (grade == last.grade || (!is_worse && now_s < last.at_s + min_interval_s)) return;
         last = {grade, now_s};
-        packets.push_back(sender_.packet("STATUSTEXT", {{"severity", severity_of(grade)}}, fitting(text)));
+        packets.push_back(sender_.packet("STATUSTEXT", {{"severity", severity_of(grade)}}, text));
     };
     for (const auto& alarm : state.alarms)
-        announce(alarm.kind, alarm.grade, fmt::format("FlightWatt {}: {}", alarm.grade, alarm.action));
+        announce(alarm.kind, alarm.grade, fitting(fmt::format("FlightWatt {}: ", alarm.grade), alarm.action));
     for (const auto& [kind, last] : announced_) {
         const bool is_raised = std::ranges::find(state.alarms, kind, &LiveAlarm::kind) != state.alarms.end();
         if (!is_raised && !last.grade.empty())

@@ -52,6 +52,7 @@ class LiveFlight::Impl {
         if (messages_of_.size() < max_senders || messages_of_.contains(sender)) ++messages_of_[sender];
         if (followed_.empty() || sender == followed_) heard_s_ = arrival_s;
         if (!message.time_s) message.time_s = arrival_s;
+        begin_unix_s_ = message.begin_unix_s.value_or(begin_unix_s_);
         const bool is_known = clocks_.contains(sender);
         const auto name = is_known || clocks_.size() < max_senders ? sender : std::string();
         // In a new file, an earlier time needs no confirmation.

@@ -23,6 +23,7 @@ struct IncomingMessage {
     bool is_after_restart = false;    ///< first message after a file was replaced or a link reopened
     std::vector<double> values = {};  ///< of the fields, NaN for text and arrays; empty: they are in `text`
     std::string packet = {};  ///< MAVLink's bytes; its `text` has sender and name, `values` the requested fields
+    std::optional<double> begin_unix_s = {};  ///< Unix time at 0 of the source's clock, as a recording states it
 };
 
 /// Counters of a source; they never decrease.

@@ -77,5 +77,16 @@ TEST(Announcer, SendsEachChangeOfAnAlarmsGrade) {
     EXPECT_THAT(announced(announcer, state, 6.5), IsEmpty());
 }
 
+/// "Land now: the reserve will be" was all that fitted.
+TEST(Announcer, LeavesOutAReasonThatDoesNotFit) {
+    Announcer announcer(7, 191);
+    LiveState state;
+    announced(announcer, state, 0.0);
+    state.alarms = {{"reserve", "alarm", "", "Turn home within 12 min: the reserve will be missed"},
+                    {"silence", "alarm", "", "Turn home: the charge is unknown"}};
+    EXPECT_THAT(announced(announcer, state, 0.1), ElementsAre("2 FlightWatt alarm: Turn home within 12 min",
+                                                              "2 FlightWatt alarm: Turn home: the charge is unknown"));
+}
+
 }  // namespace
 }  // namespace flightwatt::live

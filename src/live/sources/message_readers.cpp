@@ -121,6 +121,7 @@ void MavlinkReader::push(std::string_view bytes) {
         if (message.unix_s) {
             if (!start_unix_s_) start_unix_s_ = message.unix_s;
             incoming.time_s = *message.unix_s - *start_unix_s_;
+            incoming.begin_unix_s = start_unix_s_;
         }
         incoming.text = fmt::format("{} {}", message.sender, message.name);
         incoming.values.assign(message.values.begin(), message.values.end());

@@ -56,12 +56,14 @@ std::string_view grade_of(const std::vector<LiveAlarm>& alarms, std::string_view
 }
 
 double probability_of(const LiveState& state) {
-    const auto& prediction = *state.prediction;
     const auto& known = state.battery ? state.battery->probability_below_reserve : std::nullopt;
-    const double probability = known.value_or(prediction.battery->expected.keeps_reserve ? 0.0 : 1.0);
-    if (!prediction.overtime_s || !state.turn_home) return probability;
-    const bool is_urgent = state.turn_home->latest_in_s.value_or(0.0) < short_notice_s;
-    return is_urgent ? std::max(probability, caution_probability) : probability;
+    return known.value_or(state.prediction->battery->expected.keeps_reserve ? 0.0 : 1.0);
+}
+
+/// Whether a cruise beyond the mission's is near its latest return.
+bool is_urgent(const LiveState& state) {
+    return state.prediction->overtime_s && state.turn_home &&
+           state.turn_home->latest_in_s.value_or(0.0) < short_notice_s;
 }
 
 std::string time_text(double time_s) {
@@ -92,16 +94,34 @@ std::string reserve_text(const BatteryPrediction& battery, double probability) {
 void add_reserve_alarm(const LiveState& state, std::string_view before, std::vector<LiveAlarm>& alarms) {
     const double probability = probability_of(state);
     const bool is_alarm = reaches(probability, alarm_probability, before == alarm);
-    if (!is_alarm && !reaches(probability, caution_probability, !before.empty())) return;
+    const bool is_caution = reaches(probability, caution_probability, !before.empty());
+    if (!is_alarm && !is_caution && !is_urgent(state)) return;
     const auto& battery = *state.prediction->battery;
     const bool has_reserve = battery.limits.reserve_soc_percent > 0.0;
-    auto action =
-        probability > 0.5
-            ? fmt::format("{}: {}", return_text(state),
-                          has_reserve ? "the reserve will be missed" : "the battery will be empty")
-            : fmt::format("{}: {:.0f} of 100 flights {}", return_text(state), units::percentage(probability, 1.0),
-                          has_reserve ? "miss the reserve" : "run empty");
+    std::string action = return_text(state) + ": ";
+    if (probability > 0.5)
+        action += has_reserve ? "the reserve will be missed" : "the battery will be empty";
+    else if (is_alarm || is_caution)
+        action += fmt::format("{:.0f} of 100 flights {}", units::percentage(probability, 1.0),
+                              has_reserve ? "miss the reserve" : "run empty");
+    else
+        action += has_reserve ? "later the reserve is missed" : "later the battery is empty";
     alarms.push_back({"reserve", is_alarm ? alarm : caution, reserve_text(battery, probability), std::move(action)});
+}
+
+/// While the charge at landing is unknown: an alarm below the reserve; else what was raised before, as nothing shows
+/// that it has passed.
+void add_reserve_alarm_without_prediction(const LiveState& state, double reserve_percent, std::string_view before,
+                                          std::vector<LiveAlarm>& alarms) {
+    if (!state.phase) return;
+    const auto now = state.battery.value_or(LiveBattery{});
+    const auto percent = now.soc_percent ? now.soc_percent : now.soc_by_voltage_percent;
+    if (percent && *percent <= reserve_percent)
+        alarms.push_back({"reserve", alarm, fmt::format("{:.1f} % left, reserve {:g} %", *percent, reserve_percent),
+                          "Land now: the charge is below the reserve"});
+    else if (!before.empty())
+        alarms.push_back({"reserve", std::string(before), "the charge at landing is unknown at present",
+                          "As before: nothing shows that the reserve is kept"});
 }
 
 }  // namespace
@@ -142,7 +162,13 @@ void update_flight_times(const flight::Sortie& sortie, const flight::FlightData&
 }
 
 double retention_start_s(const flight::FlightPhases& phases, const LiveState& state) {
-    if (state.phase) return phases.sorties.back().start_s() - rest_kept_s;
+    if (state.phase) {
+        const auto& sorties = phases.sorties;
+        const double start_s = sorties.back().start_s();
+        if (sorties.size() == 1) return start_s - rest_kept_s;
+        const double rest_s = start_s - sorties[sorties.size() - 2].end_s();
+        return start_s - std::min(rest_kept_s, rest_s / 2.0);  // in the rest, not in the flight before
+    }
     double from_s = state.time_s - ground_kept_s;
     for (const auto& sortie : phases.sorties)
         if (sortie.end_s() >= from_s) from_s = std::min(from_s, sortie.start_s() - rest_kept_s);
@@ -223,7 +249,11 @@ std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<P
              fmt::format("no power was received for {:.0f} s, though the aircraft sends", state.time_without_power_s),
              "Turn home: the charge is unknown"});
     }
-    if (state.prediction && state.prediction->battery) add_reserve_alarm(state, grade_of(before, "reserve"), alarms);
+    const auto reserve_before = grade_of(before, "reserve");
+    if (state.prediction && state.prediction->battery)
+        add_reserve_alarm(state, reserve_before, alarms);
+    else if (input)
+        add_reserve_alarm_without_prediction(state, input->limits.reserve_soc_percent, reserve_before, alarms);
     const double missing_v = state.phase && state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
     if (reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty())) {
         alarms.push_back({"voltage", alarm,

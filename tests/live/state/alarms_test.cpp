@@ -94,6 +94,61 @@ TEST(AlarmsOf, TheActionStatesTheTimeLeft) {
               "23.4 % at landing, reserve 20 %; probability of missing it 97 %");
 }
 
+/// Where the prediction ended, an alarm of over 99 % ended as well, and its end was announced.
+TEST(AlarmsOf, AnAlarmOfTheReserveStaysWhileTheLandingIsUnknown) {
+    const auto raised = find_alarms(flying(0.9), input(), {});
+    ASSERT_EQ(raised.size(), 1U);
+    auto state = flying(0.9);
+    state.prediction.reset();
+    EXPECT_THAT(find_alarms(state, input(), {}), testing::IsEmpty());
+    for (const bool has_battery : {true, false}) {
+        if (!has_battery) state.battery.reset();
+        const auto held = find_alarms(state, input(), raised);
+        ASSERT_EQ(held.size(), 1U);
+        EXPECT_EQ(held.front().kind, "reserve");
+        EXPECT_EQ(held.front().grade, "alarm");
+        EXPECT_EQ(held.front().text, "the charge at landing is unknown at present");
+    }
+    state.phase.reset();
+    EXPECT_THAT(find_alarms(state, input(), raised), testing::IsEmpty()) << "it has landed";
+}
+
+TEST(AlarmsOf, AChargeBelowTheReserveIsAnAlarmWithoutAPrediction) {
+    auto state = flying(0.0);
+    state.prediction.reset();
+    auto of = input();
+    of.limits.reserve_soc_percent = 20.0;
+    state.battery->soc_by_voltage_percent = 19.0;
+    const auto alarms = find_alarms(state, of, {});
+    ASSERT_EQ(alarms.size(), 1U);
+    EXPECT_EQ(alarms.front().action, "Land now: the charge is below the reserve");
+    state.battery->soc_percent = 25.0;
+    EXPECT_THAT(find_alarms(state, of, {}), testing::IsEmpty()) << "what was counted goes before the voltage";
+}
+
+/// Of a second flight, what is kept began in the first one: its charge was unknown, without a word.
+TEST(RetentionStart, IsInTheRestBeforeTheFlight) {
+    flight::FlightPhases phases;
+    phases.sorties.resize(2);
+    const auto fly = [&](std::size_t sortie, double from_s, double to_s) {
+        auto& cruise = phases.sorties[sortie].phases.emplace_back();
+        cruise.phase = flight::Phase::cruise;
+        cruise.start.time_s = from_s;
+        cruise.end.time_s = to_s;
+    };
+    fly(0, 100.0, 900.0);
+    fly(1, 970.0, 1500.0);
+    LiveState state;
+    state.time_s = 1500.0;
+    state.phase = flight::Phase::cruise;
+    EXPECT_EQ(retention_start_s(phases, state), 935.0);
+    phases.sorties[0].phases.clear();
+    fly(0, 100.0, 200.0);
+    EXPECT_EQ(retention_start_s(phases, state), 670.0);
+    phases.sorties.erase(phases.sorties.begin());
+    EXPECT_EQ(retention_start_s(phases, state), 670.0);
+}
+
 TEST(AlarmsOf, WithoutAProbabilityTheExpectedLandingDecides) {
     auto state = flying(0.0);
     state.battery->probability_below_reserve.reset();
@@ -108,6 +163,7 @@ TEST(AlarmsOf, ACruiseBeyondTheMissionsWarnsBeforeItIsTooLate) {
     EXPECT_EQ(action_of(state), "");
     state.turn_home->latest_in_s = 110.0;
     EXPECT_EQ(find_alarms(state, input(), {}).front().grade, "caution");
+    EXPECT_EQ(action_of(state), "Turn home within 1 min: later the reserve is missed");
 }
 
 TEST(AlarmsOf, OtherKindsHaveGradesAndActions) {
