@@ -145,8 +145,9 @@ void write_packs(const cli::StageCall& call, const PlanArguments& arguments, con
         const auto& plan = *setup.cruise_path->plan;
         const auto name = fmt::format("pack-{}", flight.pack);
         const auto plan_name = name + path::plan_ending(format);
-        auto written =
-            write_plan({setup.name, drawn_path(plan), *plan.origin, setup.mechanical->is_rotorcraft}, format);
+        auto written = write_plan({setup.name, drawn_path(plan), *plan.origin, setup.mechanical->is_rotorcraft,
+                                   plan.turns.value_or(path::TurnLimits{}), plan.wind},
+                                  format);
         notes.insert(written.notes.begin(), written.notes.end());
         files[folder / plan_name] = std::move(written.text);
         mission::PlannedPack pack{flight.pack, setup.name, plan_name, {}};

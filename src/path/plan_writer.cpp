@@ -35,7 +35,7 @@ struct Stop {
 class StopList {
   public:
     explicit StopList(const PlanToWrite& plan)
-        : elements_(plan.path.elements), altitude_m_(plan.origin.altitude_m.value_or(default_altitude_m)) {
+        : plan_(plan), elements_(plan.path.elements), altitude_m_(plan.origin.altitude_m.value_or(default_altitude_m)) {
         start_altitude_m_ = altitude_m_;
         if (!plan.origin.altitude_m)
             notes.push_back(fmt::format("no altitude is stated: {} m above the ground", default_altitude_m));
@@ -59,6 +59,14 @@ class StopList {
         if (is_corner) note_once(text);
     }
 
+    /// Whether another turn takes the place of a part of a circle between lines (fly_turns).
+    bool is_narrow_turn(const PathElement& element, const Circles& circles) const {
+        const double bank_m =
+            turn_radius_m(element.airspeed_m_per_s, plan_.turns.max_bank_deg, plan_.wind.speed_m_per_s);
+        return element.is_turn && !plan_.is_rotorcraft &&
+               circles.radius_m < std::max(bank_m, plan_.turns.radius_m.value_or(0.0)) * (1.0 - 1e-9);
+    }
+
     void note_once(const std::string& text) {
         if (std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
     }
@@ -70,6 +78,7 @@ class StopList {
         altitude_m_ += element.altitude_change_m;
         const double airspeed = element.airspeed_m_per_s;
         if (const auto* circles = std::get_if<Circles>(&element.shape)) {
+            if (is_narrow_turn(element, *circles)) return stops.push_back({at_, altitude_m_, airspeed});
             if (element.is_turn) note_corner(*circles);
             course_deg_ = circles->start_course_deg + (circles->to_right ? 360.0 : -360.0) * circles->turns;
             return stops.push_back({centre(*circles, before), altitude_m_, airspeed, 0.0, *circles});
@@ -107,6 +116,7 @@ class StopList {
                           middle.north_m + scale * out.north_m - at_.north_m) < written_place_m;
     }
 
+    const PlanToWrite& plan_;
     const std::vector<PathElement>& elements_;
     double altitude_m_;
     double start_altitude_m_;

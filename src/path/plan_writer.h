@@ -2,6 +2,7 @@
 
 #include "path/path.h"
 #include "path/plan_blocks.h"
+#include "path/turns.h"
 
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ struct PlanToWrite {
     FlightPath path;  ///< without turns
     PathOrigin origin;
     bool is_rotorcraft = false;
+    TurnLimits turns = {};  ///< turns between lines that are narrower, in the wind, are left to the autopilot
+    Wind wind = {};
 };
 
 /// A plan in the format of a ground station.

@@ -73,6 +73,30 @@ double length_m(const PathElement& element) {
     return leg != nullptr ? leg->length_m : 0.0;
 }
 
+/// Half circles of 25 m were written, which no aircraft flies in the wind: read again, they were wider.
+TEST(PlanWriter, LeavesTurnsThatAreTooNarrowToTheAutopilot) {
+    auto plan = flight();
+    plan.path.elements.clear();
+    for (int line = 0; line < 4; ++line) {
+        PathElement element;
+        element.airspeed_m_per_s = 14.0;
+        const bool is_north = line % 2 == 0;
+        element.shape = Leg{600.0, is_north ? 0.0 : 180.0};
+        plan.path.elements.push_back(element);
+        element.shape = Circles{25.0, 0.5, is_north, is_north ? 0.0 : 180.0};
+        element.is_turn = true;
+        if (line < 3) plan.path.elements.push_back(element);
+    }
+    plan.wind = {3.0, 200.0};
+    const auto flown_m = [&](const FlightPath& path) {
+        double sum_m = 0.0;
+        for (const auto& element : fly_turns(path, plan.wind, plan.turns).path.elements) sum_m += length_m(element);
+        return sum_m;
+    };
+    for (const auto format : formats)
+        EXPECT_NEAR(flown_m(read_again(plan, format)), flown_m(plan.path), 0.1) << plan_ending(format);
+}
+
 TEST(PlanWriter, WritesWhatIsReadAgain) {
     for (const bool is_rotorcraft : {false, true})
         for (const auto format : formats) {
