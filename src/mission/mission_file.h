@@ -1,6 +1,5 @@
 #pragma once
 
-#include "base/error.h"
 #include "mission/mission.h"
 #include "mission/mission_read_options.h"
 
@@ -10,11 +9,6 @@
 #include <string_view>
 
 namespace flightwatt::mission {
-
-/// A path that can be flown, at airspeeds so far beyond those of the model's flights that its power is unknown.
-class UnknownPowerError : public InputError {
-    using InputError::InputError;
-};
 
 /// Reads a mission file (docs/missions.md). A mission with [plan], an adaptive policy, or components and no
 /// [[schedule]] is a planning problem, and its [[schedule]] is the fixed part; without an adaptive policy it is refused

@@ -1,10 +1,16 @@
 #pragma once
 
+#include "base/error.h"
 #include "path/area.h"
 
 #include <optional>
 
 namespace flightwatt::mission {
+
+/// A path that can be flown, at airspeeds so far beyond those of the model's flights that its power is unknown.
+class UnknownPowerError : public InputError {
+    using InputError::InputError;
+};
 
 /// Options of reading a mission.
 struct MissionReadOptions {

@@ -5,7 +5,6 @@
 #include "mission/file/named_file.h"
 #include "mission/file/planning_toml.h"
 #include "mission/file/takeoff_height.h"
-#include "mission/mission_file.h"
 #include "mission/planning/survey_layouts.h"
 #include "path/area.h"
 #include "path/cruise_path.h"
