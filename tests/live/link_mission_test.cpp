@@ -99,12 +99,14 @@ TEST(LinkMission, IsReadAgainAfterAnUpload) {
     mission.receive(message_of(count_of(vehicle, 1)));
     ASSERT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F))));
     ASSERT_THAT(asked(mission, 1.0), IsEmpty());
-    const auto acknowledge = [&](const char* type) {
-        mission.receive(message_of(vehicle.packet(47, "\xF5\xBF" + std::string(type, 1))));
+    const auto acknowledge = [&](char type) {
+        mission.receive(message_of(vehicle.packet(47, std::string("\xF5\xBF") + type)));
     };
-    acknowledge("\x05");
+    constexpr char accepted = 0;
+    constexpr char refused = 5;
+    acknowledge(refused);
     EXPECT_FALSE(mission.is_outdated()) << "it was refused";
-    acknowledge("\0");
+    acknowledge(accepted);
     EXPECT_TRUE(mission.is_outdated());
     EXPECT_THAT(asked(mission, 2.0), ElementsAre("MISSION_REQUEST_LIST"));
     mission.receive(message_of(count_of(vehicle, 1)));
