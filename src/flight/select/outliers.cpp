@@ -41,7 +41,7 @@ constexpr double neighbour_factor = 2.0;
 constexpr double voltage_step = 0.30;
 constexpr double counter_step = 0.01;
 constexpr std::size_t max_dropout = 3;
-constexpr double max_dropout_part = 0.2;  // of the samples: more may be a motor that is pulsed
+constexpr double max_removed_part = 0.2;  // of the samples: more may be a motor that is pulsed
 constexpr double dropout_throttle_percent = 30.0;
 constexpr double running_fraction = 0.25;
 
@@ -188,18 +188,30 @@ ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& c
             reasons.push_back(fmt::format("{} {}", removed, reason));
     };
     remove(contradicted_s, "where power is not voltage times current");
+    const auto part = [&](const std::vector<double>& times_s) {
+        return static_cast<double>(times_s.size()) / std::max(1.0, static_cast<double>(all));
+    };
     const auto dropouts_s = dropout_times(chosen, throttle);
-    const double dropout_part = static_cast<double>(dropouts_s.size()) / std::max(1.0, static_cast<double>(all));
-    if (dropout_part <= max_dropout_part)
-        remove(dropouts_s, "at 0 for up to three samples with the throttle open");
-    else
+    const bool is_pulsed = part(dropouts_s) > max_removed_part;
+    if (is_pulsed) {
         chosen.notes.push_back(fmt::format(
             "{} ({}) is 0 in {:.0f} % of its samples, between others with the throttle open: a pulsed motor, or a sensor "
             "that fails; they count as they are, without them {:.0f} % of the energy would be added",
-            candidate.name, candidate.source, units::percentage(dropout_part, 1.0),
-            units::percentage(dropout_part, 1.0 - dropout_part)));
-    remove(spike_times(chosen),
-           is_counter(candidate) ? "out of the counter's order" : "far beyond the neighbouring samples");
+            candidate.name, candidate.source, units::percentage(part(dropouts_s), 1.0),
+            units::percentage(part(dropouts_s), 1.0 - part(dropouts_s))));
+    } else {
+        remove(dropouts_s, "at 0 for up to three samples with the throttle open");
+    }
+    const auto spikes_s = spike_times(chosen);
+    const bool is_load = candidate.name == "power_w" || candidate.name == "current_a";
+    if (!is_load || part(spikes_s) <= max_removed_part) {
+        remove(spikes_s, is_counter(candidate) ? "out of the counter's order" : "far beyond the neighbouring samples");
+    } else if (!is_pulsed) {
+        chosen.notes.push_back(fmt::format(
+            "{:.0f} % of the samples of {} ({}) are far beyond their neighbours: a pulsed motor, or a sensor that fails; "
+            "they count as they are",
+            units::percentage(part(spikes_s), 1.0), candidate.name, candidate.source));
+    }
     if (!reasons.empty()) {
         chosen.notes.push_back(fmt::format("{} of {} samples of {} ({}) are removed: {}", all - chosen.value.size(),
                                            all, candidate.name, candidate.source, fmt::join(reasons, ", ")));

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::flight {
@@ -132,6 +133,18 @@ TEST(Outliers, AreDropoutsWhileTheThrottleIsOpen) {
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 4.9}, {50, 0.0}}), throttle(50.0)), 0U)
         << "next to less than a quarter of the median";
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{49, 5.1}, {50, 0.0}}), throttle(50.0)), 1U);
+}
+
+TEST(Outliers, AreNotThePulsesOfAMotor) {
+    for (const auto& throttle : {Track{}, track_with("throttle_percent", 50.0, {})}) {
+        auto pulsed = track_with("power_w", 0.0, {});
+        for (std::size_t i = 0; i < 100; i += 2) pulsed.value[i] = 40.0;
+        const auto chosen = remove_outliers(pulsed, {}, throttle);
+        EXPECT_EQ(chosen.value, pulsed.value) << "each pulse stands far beyond its neighbours, which are 0";
+        ASSERT_EQ(chosen.notes.size(), 1U);
+        EXPECT_THAT(chosen.notes.front(), testing::HasSubstr("49 % of"));
+        EXPECT_THAT(chosen.notes.front(), testing::HasSubstr("a pulsed motor, or a sensor that fails"));
+    }
 }
 
 }  // namespace
