@@ -70,8 +70,15 @@ FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie
     const auto& last = sortie->phases.back();
     if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
     const double cruise_start_s = first.end.time_s;
-    if (last.phase == flight::Phase::takeoff || until_s - cruise_start_s < options.hold_s)
-        return measured_progress(known, {{flight::Phase::takeoff, first.start.time_s, until_s}}, until_s);
+    const bool is_climbing = last.phase == flight::Phase::takeoff;
+    if (is_climbing || until_s - cruise_start_s < options.hold_s) {
+        auto flown = measured_progress(known, {{flight::Phase::takeoff, first.start.time_s, until_s}}, until_s);
+        if (!is_climbing)
+            flown.phases[flight::Phase::takeoff] = {
+                cruise_start_s - first.start.time_s,
+                integrated_energy_wh(known.power_w, first.start.time_s, cruise_start_s)};
+        return flown;
+    }
     return measured_progress(known,
                              {{flight::Phase::takeoff, first.start.time_s, cruise_start_s},
                               {flight::Phase::cruise, cruise_start_s, until_s}},

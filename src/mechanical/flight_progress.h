@@ -22,7 +22,7 @@ struct FlightProgress {
     double energy_wh = 0.0;  ///< measured from lift-off until now
     double cruise_energy_wh = 0.0;
     BinnedFlight motion = {};                  ///< until now
-    flight::PerPhase<FlownPhase> phases = {};  ///< with a known start
+    flight::PerPhase<FlownPhase> phases = {};  ///< with a known start; of a take-off until 90 % of the height so far
     double cruise_s() const { return until_s - cruise_start_s; }
 };
 
@@ -32,7 +32,8 @@ double log_time_after_lift_off(const flight::FlightSeries& series, double since_
                                const flight::SegmentationOptions& options = {});
 
 /// Returns the state at the end of a log, from its segmentation (nullptr: no sortie). Until the height was held for
-/// hold_s, all of the flight is its take-off: a climbing aircraft has always just reached 90 % of its height so far.
+/// hold_s, the aircraft is in its take-off: while it climbs, it has always just reached 90 % of its height so far. What it
+/// flew since then counts for no phase, as it may be cruise already.
 /// Throws NoResultError where by then the aircraft has not taken off or has landed, where its take-off is not in the
 /// log, or where nothing was logged for more than 60 s before.
 FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,

@@ -23,15 +23,12 @@ std::vector<double> durations_s(const MechanicalModel& model, flight::Phase phas
     return flown_s;
 }
 
-/// Half width of the 95 % interval of a phase's mean power, where it is known.
-std::optional<double> mean_power_half_width_w(const WeightedPhase& phase, std::size_t flights) {
-    const auto& model = phase.model;
-    if (flights > 1 && model.level_spread)
-        return student_t_half_width(static_cast<double>(model.level_spread->flights - 1)) *
-               model.level_spread->between_flight_sd_w * std::sqrt(phase.weight_square_sum);
-    if (flights != 1 || !model.errors || !model.rms_w || !(model.errors->effective_samples > 0.0)) return std::nullopt;
-    return student_t_half_width(model.errors->degrees_of_freedom) * *model.rms_w /
-           std::sqrt(model.errors->effective_samples);
+/// Half width of the 95 % interval of a phase's mean power; std::nullopt of a single flight.
+std::optional<double> mean_power_half_width_w(const WeightedPhase& phase) {
+    const auto& spread = phase.model.level_spread;
+    if (!spread) return std::nullopt;
+    return student_t_half_width(static_cast<double>(spread->flights - 1)) * spread->between_flight_sd_w *
+           std::sqrt(phase.weight_square_sum);
 }
 
 using flight::Phase;
@@ -42,7 +39,7 @@ using PhaseMatrix = Eigen::Matrix3d;
 struct PhaseVariances {
     PhaseMatrix level_w2 = PhaseMatrix::Zero();         ///< between flights
     PhaseMatrix level_change_w2 = PhaseMatrix::Zero();  ///< by one standard error of the correlations
-    PhaseVector flown_w2 = PhaseVector::Zero();         ///< drift, of the phase in progress
+    PhaseVector flown_w2 = PhaseVector::Zero();         ///< drift, of the phase in progress, and the phase's boundary
     PhaseVector remaining_w2 = PhaseVector::Zero();
     PhaseVector both_w2 = PhaseVector::Zero();  ///< its covariance of the flown and the remaining part
     PhaseVector was_flown = PhaseVector::Zero();
@@ -104,6 +101,17 @@ void add_causes(EnergyEstimate& estimate, const PhaseVector& ahead_s, const Phas
     for (const double variance_j2 : {average * level_s.dot(of.level_w2 * level_s), average * std::max(0.0, drift_j2),
                                      shape_j * shape_j, average * gains_j2})
         add_variance(estimate, std::max(0.0, variance_j2) * std::pow(units::wh_from_joule(1.0), 2), freedom);
+}
+
+/// In flight the moment between take-off and cruise is known to a second: of each flown phase's mean power, that second
+/// has the other's.
+void add_boundary(PhaseVariances& of, const flight::PerPhase<FlownPhase>& flown,
+                  const flight::PerPhase<RemainingCruise>& phases) {
+    constexpr double boundary_s = 1.0;
+    const double step_j = boundary_s * (phases[Phase::takeoff].expected_w - phases[Phase::cruise].expected_w);
+    for (const auto phase : {Phase::takeoff, Phase::cruise})
+        if (flown[Phase::takeoff].duration_s > 0.0 && flown[phase].duration_s > 0.0)
+            of.flown_w2[static_cast<Eigen::Index>(phase)] += std::pow(step_j / flown[phase].duration_s, 2);
 }
 
 /// Correlations with m flights are as uncertain as with this many more, in which phases do not correlate.
@@ -215,7 +223,7 @@ std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase 
     if (power.flights == 0) return std::nullopt;
     const auto forecast = forecast_of(model, phase);
     power.samples = forecast.model.samples;
-    if (const auto half_w = mean_power_half_width_w(forecast, power.flights))
+    if (const auto half_w = mean_power_half_width_w(forecast))
         power.interval = {std::max(power.mean_w - *half_w, std::min(power.mean_w, 0.0)), power.mean_w + *half_w};
     return power;
 }
@@ -362,6 +370,7 @@ RemainingFlight predict_remaining_flight(const flight::PerPhase<std::optional<We
         average = std::max(average, 1.0 + model[phase]->weight_square_sum);
         freedom = std::min(freedom, static_cast<double>(model[phase]->model.level_spread->flights - 1));
     }
+    add_boundary(of, flown, rest.phases);
     const auto update = update_of(of);
     const PhaseVector change_w = update.gains * means.deviation_w;
     const PhaseVector ahead_s(remaining_s.values.data());

@@ -48,16 +48,14 @@ WeightedPhase forecast_of(const MechanicalModel& model, flight::Phase phase);
 
 /// The mean power of a phase, over the flights that count.
 struct MeanPower {
-    double mean_w = 0.0;  ///< of the flights' mean powers, by their weights
-    std::optional<Interval>
-        interval;  ///< 95 %, of the mean of all flights like these; of a single flight of its own mean
+    double mean_w = 0.0;               ///< of the flights' mean powers, by their weights
+    std::optional<Interval> interval;  ///< 95 %, of the mean of all flights like these; absent of a single flight
     std::size_t flights = 0;
     std::size_t samples = 0;  ///< of all flights that have the phase
 };
 
-/// The interval is Student's t over two flights or more (VarianceComponents); for a single one it is the residual of
-/// its curve over its effective samples, if errors were analysed. A low end below 0 is 0. std::nullopt for a model
-/// without the flights' mean powers.
+/// The interval is Student's t over two flights or more (VarianceComponents). A low end below 0 is 0. std::nullopt for a
+/// model without the flights' mean powers.
 std::optional<MeanPower> mean_power(const MechanicalModel& model, flight::Phase phase);
 
 /// Energy of a phase of `duration_s`, before the flight: the time-scaled curve's integral. Its interval includes the
