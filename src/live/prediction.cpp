@@ -21,6 +21,18 @@ using mechanical::DurationEstimate;
 using mechanical::FlightProgress;
 using path::PathFix;
 
+/// Throws NoResultError for a motion whose power the model does not know.
+void require_predictable(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
+                         bool is_rotorcraft) {
+    if (may_predict_power(model, motion, is_rotorcraft)) return;
+    const auto& speeds = model.airspeed_m_per_s;
+    throw NoResultError(fmt::format(
+        "the power at {:.3g} m/s with {:+.3g} m/s of climb is unknown: the model's flights flew {:.1f} to {:.1f} m/s, "
+        "with {:+.1f} to {:+.1f} m/s of climb; state a motion near these",
+        motion.airspeed_m_per_s, motion.climb_m_per_s, speeds.low, speeds.high, model.climb_m_per_s.low,
+        model.climb_m_per_s.high));
+}
+
 void warn_of_extrapolation(const mechanical::PhysicalModel& model, const mechanical::FlightState& motion,
                            Remarks& remarks) {
     if (is_within_flown_range(model, motion)) return;
@@ -184,6 +196,7 @@ mechanical::RemainingCruise predict_cruise(const PredictionInput& input, const F
     if (!input.motion) return predict_phases(input, flown, prediction);
     auto model = input.model.physical.value();
     if (flown.motion.payload_known) model.load.payload_kg = flown.motion.load.payload_kg;
+    require_predictable(model, *input.motion, input.model.is_rotorcraft);
     warn_of_extrapolation(model, *input.motion, remarks);
     return predict_remaining_physical(model, flown, {term_values(*input.motion, model.load), prediction.remaining_s});
 }
@@ -208,7 +221,7 @@ DurationEstimate takeoff_ahead(const PredictionInput& input, const FlightProgres
         "the aircraft has not held its height yet: when its take-off ends is by the model's flights, and the power of "
         "its cruise is known by its take-off only");
     auto rest = duration_ahead(input, Phase::takeoff, input.takeoff_s, flown);
-    rest.mean_s = std::max(0.0, rest.mean_s - flown.phases[Phase::takeoff].duration_s);
+    rest.mean_s = std::max(0.0, rest.mean_s - (flown.until_s - flown.lift_off_s));
     if (rest.mean_s > 0.0 && !input.model.phases[Phase::takeoff].level_spread)
         throw NoResultError("the aircraft takes off, and the model has no variability of take-offs between flights");
     return rest;
@@ -218,7 +231,7 @@ DurationEstimate takeoff_ahead(const PredictionInput& input, const FlightProgres
 void add_other_phases(const PredictionInput& input, Prediction& prediction) {
     if (prediction.takeoff_s > 0.0)
         prediction.takeoff = mechanical::predict_remaining_before_flight(
-            forecast_of(input.model, Phase::takeoff), prediction.flown.phases[Phase::takeoff].duration_s,
+            forecast_of(input.model, Phase::takeoff), prediction.flown.until_s - prediction.flown.lift_off_s,
             prediction.takeoff_s);
     if (prediction.landing_s > 0.0)
         prediction.landing =

@@ -94,6 +94,18 @@ TEST(PhysicalModel, KnowsWhatWasFlown) {
     EXPECT_FALSE(is_within_flown_range(some_model(), {.airspeed_m_per_s = 12.0, .climb_m_per_s = 4.0}));
 }
 
+TEST(PhysicalModel, PredictsNoMotionFarFromWhatWasFlown) {
+    const auto model = some_model();  // 10 to 20 m/s
+    EXPECT_TRUE(may_predict_power(model, {.airspeed_m_per_s = 12.0, .climb_m_per_s = 1.0}, false));
+    const double high = model.airspeed_m_per_s.high;
+    EXPECT_TRUE(may_predict_power(model, {.airspeed_m_per_s = 1.25 * high}, false)) << "1.95 times the power";
+    EXPECT_FALSE(may_predict_power(model, {.airspeed_m_per_s = 1.27 * high}, false)) << "2.05 times the power";
+    EXPECT_FALSE(may_predict_power(model, {.airspeed_m_per_s = 300.0}, false));
+    EXPECT_FALSE(may_predict_power(model, {.airspeed_m_per_s = 0.1}, false));
+    EXPECT_FALSE(may_predict_power(model, {.airspeed_m_per_s = 12.0, .climb_m_per_s = -20.0}, false));
+    EXPECT_FALSE(may_predict_power(model, {.airspeed_m_per_s = 12.0, .climb_m_per_s = 20.0}, false));
+}
+
 /// Lift n times the weight takes n^2 times the induced drag.
 TEST(PhysicalModel, TurnsTakeInducedDragWhereTheyHaveNoTerm) {
     PhysicalModel model;

@@ -27,8 +27,6 @@
 namespace flightwatt::mission {
 namespace {
 
-/// Limit of the extrapolated power relative to that of the airspeeds that were flown, and of its inverse.
-constexpr double max_power_ratio = 2.0;
 constexpr double noted_part = 0.2;  // of the power
 
 /// Throws InputError at `where` if the model has no physical part.
@@ -520,10 +518,8 @@ void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission) {
     const auto& physical = physical_of(*mission.mechanical, where);
     const auto& [low, high] = physical.airspeed_m_per_s;
     const mechanical::FlightState motion{airspeed};
-    const double power = power_w(physical, motion);
     const auto beyond = fmt::format("airspeed_m_per_s = {} is beyond what the model's flights flew", airspeed);
-    if (power > max_power_ratio * power_w(physical, {high}) || power * max_power_ratio < power_w(physical, {low}) ||
-        !may_be_predicted(airspeed, physical, mission.mechanical->is_rotorcraft))
+    if (!may_predict_power(physical, motion, mission.mechanical->is_rotorcraft))
         throw InputError(where, beyond, near_flown_hint(physical));
     if (!is_within_flown_range(physical, motion))
         mission.notes.push_back(fmt::format("{} ({:.4g} to {:.4g} m/s): its power is extrapolated", beyond, low, high));
