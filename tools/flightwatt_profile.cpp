@@ -70,7 +70,8 @@ int check_interpolation(const cli::StageCall& call, const ProfileArguments& argu
     CheckOutput output;
     for (const auto& file : call.inputs) {
         const auto profile = read_power_profile(file, naming_of(arguments));
-        if (const auto negative = negative_power_warning(profile); !negative.empty()) cli::warn(call, negative);
+        auto in_missions = profile;
+        if (const auto negative = remove_negative_power(in_missions); !negative.empty()) cli::warn(call, negative);
         output.profiles.push_back({file, profile.power_w.size(), compute::leave_one_out(profile)});
     }
     cli::write_result(call, screen_text(table_of(output.profiles), screen));

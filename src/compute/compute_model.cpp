@@ -68,14 +68,18 @@ PowerProfile make_power_profile(const std::string& file, const std::vector<std::
     return profile;
 }
 
-std::string negative_power_warning(const PowerProfile& profile) {
+std::string remove_negative_power(PowerProfile& profile) {
     if (profile.power_w.empty()) return "";
     const auto min_at = std::ranges::min_element(profile.power_w);
-    if (*min_at >= 0.0) return "";
+    const double lowest_w = *min_at;
+    if (lowest_w >= 0.0) return "";
     const auto node = grid_point(profile.axes, static_cast<std::size_t>(min_at - profile.power_w.begin()));
     const auto at = profile.parameters.empty() ? "" : " at " + format_qos(profile.parameters, node, " = ", ", ");
-    return fmt::format("{}: {:.3g} W{}: software does not return power; within the noise of the profile it is 0",
-                       profile.file, *min_at, at);
+    for (auto& power_w : profile.power_w) power_w = std::max(power_w, 0.0);
+    return fmt::format(
+        "{}: {:.3g} W{}: software does not return power, and counts as 0; state may_charge = true if a "
+        "source aboard charges the battery",
+        profile.file, lowest_w, at);
 }
 
 void require_in_range(const PowerProfile& profile, std::size_t parameter, double value, const Location& where) {

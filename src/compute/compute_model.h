@@ -26,6 +26,7 @@ struct PowerProfile {
     std::vector<std::vector<double>> axes;      ///< profiled values of each parameter, rising
     std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
     std::vector<double> standard_error_w = {};  ///< of every node; empty unless all are known
+    double excluded_idle_w = 0.0;  ///< of the idle computer, which the powers are above; 0: they include it
 };
 
 /// The grid of `nodes`, in any order. Throws InputError for no nodes, for a duplicate node (at its second occurrence),
@@ -41,8 +42,8 @@ void require_in_range(const PowerProfile& profile, std::size_t parameter, double
 /// a value is out of range.
 double power_w(const PowerProfile& profile, const std::vector<double>& qos);
 
-/// "PROFILE: -0.2 W at fps = 3: ..." where a node's power is negative; empty if none is.
-std::string negative_power_warning(const PowerProfile& profile);
+/// Sets powers below 0 to 0, as software returns none, and returns a warning with the lowest; empty if there are none.
+std::string remove_negative_power(PowerProfile& profile);
 
 /// Errors of interpolating each node of a profile from the others.
 struct LeaveOneOutErrors {

@@ -144,35 +144,65 @@ compute::Component read_component(const TomlTable& table, const std::string& nam
     return {name, read_power_profile(named_file(table, "profile"), naming)};
 }
 
+constexpr double least_of_idle = 0.5;  // idle power differs less between days
+
+/// The component with the most power that its profile leaves out; nullptr if none does.
+const compute::Component* above_idle(const compute::ComputeModel& compute) {
+    const auto excluded_w = [](const compute::Component& component) { return component.profile.excluded_idle_w; };
+    const auto above = std::ranges::max_element(compute.components, {}, excluded_w);
+    return above == compute.components.end() || excluded_w(*above) <= 0.0 ? nullptr : &*above;
+}
+
 /// Adds a note where a profile is above the idle computer and no other component draws what that does.
-void note_missing_idle(const std::vector<double>& excluded_idle_w, MissionSetup& mission) {
-    constexpr double least_of_idle = 0.5;  // idle power differs less between days
-    const auto above = std::ranges::max_element(excluded_idle_w);
-    if (above == excluded_idle_w.end() || *above <= 0.0) return;
+void note_missing_idle(MissionSetup& mission) {
+    const auto* above = above_idle(mission.compute);
+    if (above == nullptr) return;
     double others_w = 0.0;
-    for (std::size_t i = 0; i < excluded_idle_w.size(); ++i)
-        if (excluded_idle_w[i] <= 0.0) others_w += std::ranges::min(mission.compute.components[i].profile.power_w);
-    if (others_w >= least_of_idle * *above) return;
-    mission.notes.push_back(fmt::format(
-        "the profile of {} is above the idle computer, whose {:.3g} W no component draws: add the idle.csv of "
-        "its folder as a component, and run it",
-        mission.compute.components[static_cast<std::size_t>(above - excluded_idle_w.begin())].name, *above));
+    for (const auto& component : mission.compute.components)
+        if (component.profile.excluded_idle_w <= 0.0) others_w += std::ranges::min(component.profile.power_w);
+    if (others_w >= least_of_idle * above->profile.excluded_idle_w) return;
+    mission.notes.push_back(
+        fmt::format("the profile of {} is above the idle computer, whose {:.3g} W no component draws: add the idle.csv "
+                    "of its folder as a component, and run it",
+                    above->name, above->profile.excluded_idle_w));
+}
+
+/// Adds a note where such a component runs while none draws the power of the idle computer, which a component has.
+void note_idle_not_run(const Schedule& schedule, MissionSetup& mission) {
+    const auto* above = above_idle(mission.compute);
+    if (above == nullptr) return;
+    double without_s = 0.0;
+    for (const auto& segment : schedule) {
+        double excluded_w = 0.0;
+        double others_w = 0.0;
+        for (const auto& [index, qos] : segment.run) {
+            const auto& component = mission.compute.components[index];
+            excluded_w = std::max(excluded_w, component.profile.excluded_idle_w);
+            if (component.profile.excluded_idle_w <= 0.0) others_w += power_w(component.profile, qos);
+        }
+        if (others_w < least_of_idle * excluded_w) without_s += segment.duration_s();
+    }
+    if (without_s <= 0.0) return;
+    mission.notes.push_back(
+        fmt::format("the profile of {} is above the idle computer, and for {:.0f} s of the schedule nothing draws the "
+                    "{:.3g} W of that: add the idle.csv of its folder as a component, and run it",
+                    above->name, without_s, above->profile.excluded_idle_w));
 }
 
 void read_components(const TomlTable& root, MissionSetup& mission) {
     const auto components = root.optional_table("components");
     if (!components) return;
-    std::vector<double> excluded_w;
     for (const auto& name : components->keys()) {
         const auto table = components->table(name);
-        mission.compute.components.push_back(read_component(table, name));
-        excluded_w.push_back(compute::excluded_idle_w(named_file(table, "profile")));
+        auto& component = mission.compute.components.emplace_back(read_component(table, name));
+        component.profile.excluded_idle_w = compute::excluded_idle_w(named_file(table, "profile"));
+        if (!mission.may_charge)
+            if (auto text = remove_negative_power(component.profile); !text.empty())
+                mission.notes.push_back(std::move(text));
         std::optional<Utility> utility;
-        if (const auto stated = table.optional_table("utility"))
-            utility = read_utility(*stated, mission.compute.components.back().profile);
+        if (const auto stated = table.optional_table("utility")) utility = read_utility(*stated, component.profile);
         mission.utilities.push_back(std::move(utility));
     }
-    note_missing_idle(excluded_w, mission);
 }
 
 std::optional<double> optional_sd_percent(const TomlTable& table, std::string_view key) {
@@ -264,6 +294,7 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
             throw InputError(root.where("path"), "its lines are yet to be chosen", "`flightwatt plan` chooses them");
     }
     if (lacks_schedule || root.has("plan") || adaptive || chooses_lines) {
+        note_missing_idle(setup);
         PlanningProblem problem{std::move(setup), {}, {}, adaptive, std::move(survey)};
         problem.plan = read_plan_settings(root, problem.setup.compute);
         problem.fixed = resolve_fixed_segments(entries, problem.setup.duration_s);
@@ -279,6 +310,7 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     }
     auto schedule = resolve_schedule(entries, entries_s);
     if (is_stretched) schedule = rescale_to_flown_durations(std::move(schedule), stated_s, setup.duration_s);
+    note_idle_not_run(schedule, setup);
     return Mission{std::move(setup), std::move(schedule)};
 }
 

@@ -138,12 +138,15 @@ TEST(ComputeModel, ComponentsAdd) {
     }
 }
 
-TEST(PowerProfile, IsWarnedOfWhereItsPowerIsNegative) {
-    EXPECT_EQ(negative_power_warning(line()), "");
-    const auto below = make_power_profile("below.csv", {"fps"}, {{{5.0}, -0.2, {}}, {{10.0}, 24.0, {}}});
-    EXPECT_EQ(negative_power_warning(below),
-              "below.csv: -0.2 W at fps = 5: software does not return power; within the noise of the "
-              "profile it is 0");
+TEST(PowerProfile, HasNoPowerBelow0) {
+    auto above = line();
+    EXPECT_EQ(remove_negative_power(above), "");
+    auto below = make_power_profile("below.csv", {"fps"}, {{{5.0}, -0.2, {}}, {{10.0}, 24.0, {}}});
+    EXPECT_EQ(
+        remove_negative_power(below),
+        "below.csv: -0.2 W at fps = 5: software does not return power, and counts as 0; state may_charge = true if "
+        "a source aboard charges the battery");
+    EXPECT_EQ(below.power_w, (std::vector{0.0, 24.0}));
 }
 
 TEST(ComputeModel, DrawsNothingWhenNothingRuns) { EXPECT_EQ(power_w(paper_model(), {}), 0.0); }

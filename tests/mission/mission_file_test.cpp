@@ -304,6 +304,38 @@ TEST(MissionFile, RemembersWhatItStates) {
     EXPECT_TRUE(setup_of(asked).duration_is_stated[flight::Phase::cruise]) << "the question states it";
 }
 
+TEST(MissionFile, WarnsWhereNothingDrawsThePowerOfTheIdleComputer) {
+    const auto folder = mission_folder();
+    write_text(folder / "above.csv", "fps,power_w,total_power_w\n10,20,22\n30,40,42\n");
+    write_text(folder / "idle.csv", "power_w\n2\n");
+    const auto notes = [&](const std::string& idle, const std::string& run) {
+        return scheduled(R"(mechanical = "none"
+battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }
+duration_s = { takeoff = 0, cruise = 100, landing = 0 }
+[components]
+detection = { profile = "above.csv" }
+)" + idle + R"([[schedule]]
+phase = "cruise"
+middle = 60
+run = { detection = { fps = 10 } }
+[[schedule]]
+otherwise = true
+run = { )" + run + " }\n",
+                         folder / "m.toml")
+            .setup.notes;
+    };
+    const std::string declared = "idle = { profile = \"idle.csv\" }\n";
+    for (const auto& idle : {std::string(), declared}) {
+        const auto found = notes(idle, "");
+        ASSERT_EQ(found.size(), 1U);
+        EXPECT_EQ(
+            found[0],
+            "the profile of detection is above the idle computer, and for 60 s of the schedule nothing draws the 2 W "
+            "of that: add the idle.csv of its folder as a component, and run it");
+    }
+    EXPECT_EQ(notes(declared, "idle = {}").size(), 1U) << "not beside the software";
+}
+
 TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
     const auto folder = mission_folder();
     const auto of = [&](const std::string& text) {

@@ -297,8 +297,6 @@ void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) 
         for (const auto& battery : mission.packs->batteries)
             std::ranges::copy(battery_warnings(battery), std::back_inserter(warnings));
     if (mission.mechanical) std::ranges::copy(model_warnings(*mission.mechanical), std::back_inserter(warnings));
-    for (const auto& component : mission.compute.components)
-        if (auto text = negative_power_warning(component.profile); !text.empty()) warnings.push_back(std::move(text));
     std::ranges::copy(mission.uncertain, std::back_inserter(warnings));
     std::ranges::copy(mission.notes, std::back_inserter(warnings));
     for (const auto& warning : warnings) warn(call, fmt::format("{}: {}", mission.name, warning));

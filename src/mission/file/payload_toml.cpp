@@ -162,11 +162,14 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     if (mass_kg) require_plausible_mass(mission_table, *mass_kg, *payload_kg, model);
     const auto assumed = assume_payload(*payload_kg, mass_kg, model);
     if (assumed.reason.empty())
-        throw InputError(where,
-                         "the mechanical model does not know the effect of payload: its flights do not determine it",
-                         "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
-                         "wings, whose flights must determine the induced drag too, fit flights that state their "
-                         "payload");
+        throw InputError(
+            where, "the mechanical model does not know the effect of payload: its flights do not determine it",
+            fmt::format("{}; for wings, whose flights must determine the induced drag too, fit flights that "
+                        "state their payload",
+                        mass_kg ? "of a rotorcraft, fit the model without --model-kind fourier, which does "
+                                  "not keep what aircraft it is"
+                                : "add takeoff_mass_kg (option --mass), the mass of the aircraft as its "
+                                  "flights were flown"));
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));
     scale_phases(assumed.factor, model);
     widen(std::abs(1.0 - 1.0 / assumed.factor) * assumed_change_sd, model);
