@@ -164,12 +164,10 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     if (assumed.reason.empty())
         throw InputError(
             where, "the mechanical model does not know the effect of payload: its flights do not determine it",
-            fmt::format("{}; for wings, whose flights must determine the induced drag too, fit flights that "
-                        "state their payload",
-                        mass_kg ? "of a rotorcraft, fit the model without --model-kind fourier, which does "
-                                  "not keep what aircraft it is"
-                                : "add takeoff_mass_kg (option --mass), the mass of the aircraft as its "
-                                  "flights were flown"));
+            mass_kg ? "fit flights that state their payload, of a wing those that determine its induced drag too; a "
+                      "rotorcraft needs a model that was not fitted with --model-kind fourier"
+                    : "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
+                      "wings, whose flights must determine the induced drag too, fit flights that state their payload");
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));
     scale_phases(assumed.factor, model);
     widen(std::abs(1.0 - 1.0 / assumed.factor) * assumed_change_sd, model);
