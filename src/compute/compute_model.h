@@ -42,7 +42,7 @@ void require_in_range(const PowerProfile& profile, std::size_t parameter, double
 /// a value is out of range.
 double power_w(const PowerProfile& profile, const std::vector<double>& qos);
 
-/// Sets powers below 0 to 0, as software returns none, and returns a warning with the lowest; empty if there are none.
+/// Sets powers below 0 to 0, and returns a warning with the lowest; empty if no power is below 0.
 std::string remove_negative_power(PowerProfile& profile);
 
 /// Errors of interpolating each node of a profile from the others.

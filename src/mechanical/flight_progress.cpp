@@ -71,7 +71,10 @@ FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie
     if (last.phase == flight::Phase::landing && last.complete) refuse("has landed");
     const double cruise_start_s = first.end.time_s;
     const bool is_climbing = last.phase == flight::Phase::takeoff;
-    if (is_climbing || until_s - cruise_start_s < options.hold_s) {
+    constexpr double least_hold_s = 10.0;
+    const double climbed_s = cruise_start_s - first.start.time_s;
+    const double hold_s = std::min(options.hold_s, std::max(least_hold_s, climbed_s));
+    if (is_climbing || until_s - cruise_start_s < hold_s) {
         auto flown = measured_progress(known, {{flight::Phase::takeoff, first.start.time_s, until_s}}, until_s);
         if (!is_climbing)
             flown.phases[flight::Phase::takeoff] = {

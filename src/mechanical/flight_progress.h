@@ -32,10 +32,10 @@ double log_time_after_lift_off(const flight::FlightSeries& series, double since_
                                const flight::SegmentationOptions& options = {});
 
 /// Returns the state at the end of a log, from its segmentation (nullptr: no sortie). Until the height was held for
-/// hold_s, the aircraft is in its take-off: while it climbs, it has always just reached 90 % of its height so far. What it
-/// flew since then counts for no phase, as it may be cruise already.
-/// Throws NoResultError where by then the aircraft has not taken off or has landed, where its take-off is not in the
-/// log, or where nothing was logged for more than 60 s before.
+/// hold_s, or for 10 s and as long as the climb to it took, the aircraft is in its take-off: while it climbs, it has
+/// always just reached 90 % of its height so far. What it flew since then counts for no phase, as it may be cruise
+/// already. Throws NoResultError where by then the aircraft has not taken off or has landed, where its take-off is not
+/// in the log, or where nothing was logged for more than 60 s before.
 FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie* sortie, double until_s,
                            const flight::SegmentationOptions& options = {});
 

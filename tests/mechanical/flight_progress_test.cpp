@@ -6,7 +6,10 @@
 #include "flight/phase_statistics.h"
 #include "flight/segment.h"
 #include "helpers/flight_progress.h"
+#include "helpers/flown_points.h"
 #include "helpers/test_paths.h"
+
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -84,6 +87,18 @@ TEST(FlightProgress, IsATakeoffUntilTheHeightIsHeld) {
     EXPECT_NEAR(level.phases[flight::Phase::takeoff].duration_s, cruise_start_s - level.lift_off_s, 2.0)
         << "without the level flight behind it, which takes less power";
     EXPECT_NEAR(progress_at(series, cruise_start_s + 35.0).cruise_s(), 35.0, 2.0);
+}
+
+TEST(FlightProgress, IsACruiseOnceTheHeightIsHeldAsLongAsTheClimbTook) {
+    const std::vector<test::Point> points{{0, 0, 0},    {38, 0, 0},   {39, 0, 90},   {40, 0, 90},
+                                          {55, 60, 90}, {56, 60, 60}, {300, 60, 60}, {320, 0, 10}};
+    const auto series = test::series_of(points);
+    const auto climbed = progress_at(series, 200.0);
+    const double climb_s = climbed.cruise_start_s - climbed.lift_off_s;
+    ASSERT_GT(climb_s, 10.0);
+    ASSERT_LT(climb_s, 20.0);
+    EXPECT_EQ(progress_at(series, climbed.cruise_start_s + climb_s - 2.0).cruise_s(), 0.0);
+    EXPECT_GT(progress_at(series, climbed.cruise_start_s + climb_s + 2.0).cruise_s(), 0.0);
 }
 
 TEST(FlightProgress, RefusesMomentsOutsideOfTheFlight) {

@@ -333,7 +333,7 @@ run = { )" + run + " }\n",
             "the profile of detection is above the idle computer, and for 60 s of the schedule nothing draws the 2 W "
             "of that: add the idle.csv of its folder as a component, and run it");
     }
-    EXPECT_EQ(notes(declared, "idle = {}").size(), 1U) << "not beside the software";
+    EXPECT_EQ(notes(declared, "idle = {}").size(), 1U) << "it runs while the software does not";
 }
 
 TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
