@@ -78,8 +78,7 @@ FlightProgress progress_of(const flight::FlightData& known, const flight::Sortie
         auto flown = measured_progress(known, {{flight::Phase::takeoff, first.start.time_s, until_s}}, until_s);
         if (!is_climbing)
             flown.phases[flight::Phase::takeoff] = {
-                cruise_start_s - first.start.time_s,
-                integrated_energy_wh(known.power_w, first.start.time_s, cruise_start_s)};
+                climbed_s, integrated_energy_wh(known.power_w, first.start.time_s, cruise_start_s)};
         return flown;
     }
     return measured_progress(known,

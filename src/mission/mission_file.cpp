@@ -167,7 +167,7 @@ void note_missing_idle(MissionSetup& mission) {
                     above->name, above->profile.excluded_idle_w));
 }
 
-/// Adds a note where such a component runs while none draws the power of the idle computer, which a component has.
+/// Adds a note where such a component runs while no other draws the power of the idle computer.
 void note_idle_not_run(const Schedule& schedule, MissionSetup& mission) {
     const auto* above = above_idle(mission.compute);
     if (above == nullptr) return;
