@@ -83,7 +83,7 @@ int predict(const cli::StageCall& call, const PredictArguments& arguments) {
 int flightwatt::stages::predict_stage(int argc, char** argv) {
     cli::StageDefinition stage{
         "predict", "LOG|SERIES.csv --model MODEL.toml --remaining S | --mission MISSION.toml",
-        R"(Predicts the energy from a moment in cruise to the end of the flight. What was measured until then
+        R"(Predicts the energy from a moment after lift-off to the end of the flight. What was measured until then
 moves the cruise level of the model towards this flight's own, weighted by the variances between
 flights and within one. No later part of the log is used: a log that ends there gives the same result.
 The remaining energy is that of --remaining more seconds of cruise and of a landing as in the model

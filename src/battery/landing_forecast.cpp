@@ -6,6 +6,7 @@
 #include "battery/discharge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -39,6 +40,24 @@ double compute_endurance_s(const Battery& battery, const BatteryState& state, do
 double resting_soc_percent(const Battery& battery, double voltage_v) {
     const auto& curve = battery.thevenin.value().open_circuit;
     return interpolate_clamped(curve.voltage_v, curve.soc_percent, voltage_v);
+}
+
+double resting_soc_sd_percent(const Battery& battery, double voltage_v) {
+    constexpr double lipo_cell_v = 4.2;
+    constexpr double span_percent = 10.0;  // of the slope
+    constexpr double min_fall_v = 0.01;
+    const auto& [knots_percent, knots_v] = battery.thevenin.value().open_circuit;
+    const double full_v = open_circuit_voltage_v(battery, units::percent_per_whole);
+    const double cells = battery.cells.value_or(static_cast<int>(std::round(full_v / lipo_cell_v)));
+    const double soc_percent = resting_soc_percent(battery, voltage_v);
+    const auto& errors_v = battery.intervals.open_circuit_standard_error_v;
+    const double curve_v = errors_v.empty() ? 0.0 : interpolate_clamped(knots_percent, errors_v, soc_percent);
+    const double sd_v =
+        std::hypot(cells * charged_rest_sd_v, lower_rest_fraction * std::max(0.0, full_v - voltage_v), curve_v);
+    const double from_percent = std::max(0.0, soc_percent - span_percent);
+    const double fall_v =
+        open_circuit_voltage_v(battery, from_percent + span_percent) - open_circuit_voltage_v(battery, from_percent);
+    return std::min(sd_v / std::max(fall_v, min_fall_v) * span_percent, units::percent_per_whole);
 }
 
 BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent) {

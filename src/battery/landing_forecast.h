@@ -34,6 +34,9 @@ struct LandingForecast {
 /// The state of charge at which the battery rests at a voltage, between 0 and 100 %. The battery is a Thévenin circuit.
 double resting_soc_percent(const Battery& battery, double voltage_v);
 
+/// Returns the standard deviation [points] of that state of charge, by those of the voltage at rest and of the curve.
+double resting_soc_sd_percent(const Battery& battery, double voltage_v);
+
 /// The battery after a record: `initial_soc_percent` less the charge drawn since, with the voltage of the RC pair.
 /// Throws NoResultError where the record drew more.
 BatteryState state_after(const Battery& battery, const DischargeRecord& flown, double initial_soc_percent);

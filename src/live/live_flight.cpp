@@ -106,7 +106,7 @@ class LiveFlight::Impl {
     void restart() {
         ++restarts_;
         sorties_before_ += std::exchange(phases_, {}).sorties.size();
-        carried_percent_.reset();
+        carried_.reset();
         rejected_.clear();
         checked_s_.reset();
         warnings_.clear();
@@ -142,11 +142,11 @@ class LiveFlight::Impl {
     std::vector<IncomingMessage> accepted_;  ///< of the last message; a member to reuse its memory
     std::size_t messages_ = 0;
     std::size_t restarts_ = 0;
-    std::size_t sorties_before_ = 0;         ///< sorties that are not in `phases_` any more
-    std::size_t scheduled_sortie_ = 0;       ///< sortie of the schedule
-    std::optional<double> carried_percent_;  ///< state of charge at the start of the stored rows
-    std::string rejected_;                   ///< faults of the power record; empty if it is valid
-    std::optional<double> checked_s_;        ///< time of the last check of the record
+    std::size_t sorties_before_ = 0;        ///< sorties that are not in `phases_` any more
+    std::size_t scheduled_sortie_ = 0;      ///< sortie of the schedule
+    std::optional<InitialCharge> carried_;  ///< state of charge at the start of the stored rows
+    std::string rejected_;                  ///< faults of the power record; empty if it is valid
+    std::optional<double> checked_s_;       ///< time of the last check of the record
     std::optional<double> updated_s_;
     bool ended_ = false;
     std::vector<LiveAlarm> alarms_;            ///< of the last update
@@ -243,7 +243,7 @@ void LiveFlight::Impl::update_flight(const flight::FlightData& data, LiveState& 
 void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState& state) {
     record_.reset();
     if (!input_ || !input_->battery || state.time_without_power_s > 0.0) return;
-    state.battery = estimate_soc(*input_, carried_percent_, data, record_);
+    state.battery = estimate_soc(*input_, carried_, data, record_);
     const bool is_counted = state.began_in_air && !record_ && restarts_ == 0;
     if (is_counted && input_->initial_soc_percent)
         estimate_soc_from_counter(data.charge_ah, input_->battery->capacity_ah, *input_->initial_soc_percent,
@@ -298,12 +298,9 @@ void LiveFlight::Impl::predict_battery(LiveState& state, Remarks& remarks) const
     const auto& now = *state.battery;
     const bool has_record = !state.began_in_air && record_ && now.soc_percent;
     if (!has_record && !(state.began_in_air && now.state)) return;
-    const auto state_of = [&](const battery::Battery& pack) {
-        return has_record ? state_after(pack, *record_, now.initial_soc_percent) : *now.state;
-    };
-    auto result = forecast_battery(*input_->battery, input_->limits, state_of, *state.prediction);
-    result.initial_soc_percent = has_record ? now.initial_soc_percent : now.state->soc_percent;
-    result.initial_is_measured = has_record && now.initial_is_from_voltage;
+    auto result = forecast_battery(*input_->battery, input_->limits,
+                                   {*now.state, has_record ? *now.drawn_ah : 0.0, now.initial}, *state.prediction);
+    if (!has_record) result.initial.soc_percent = now.state->soc_percent;
     result.initial_soc_is_current = !has_record;
     if (!has_record)
         remarks.warnings.emplace_back(now.soc_percent
@@ -395,8 +392,9 @@ void LiveFlight::Impl::trim(const LiveState& state) {
     if (store_.rows() <= options_.max_rows) return;
     const double from_s = retention_start_s(phases_, state);
     if (record_ && state.battery && state.battery->soc_percent) {
-        if (const auto percent = soc_at(*input_->battery, *record_, state.battery->initial_soc_percent, from_s))
-            carried_percent_ = percent;
+        const auto& [initial_percent, sd_percent] = state.battery->initial;
+        if (const auto percent = soc_at(*input_->battery, *record_, initial_percent, from_s))
+            carried_ = InitialCharge{*percent, sd_percent};
     }
     for (const auto& sortie : phases_.sorties) sorties_before_ += sortie.end_s() < from_s ? 1 : 0;
     store_.drop_before(from_s);

@@ -23,10 +23,9 @@ struct LiveAlarm {
 
 /// The state of the battery, by charge and by voltage.
 struct LiveBattery {
-    std::optional<double> soc_percent;             ///< the initial one less the charge drawn
-    std::optional<double> soc_by_voltage_percent;  ///< by the battery's model from voltage and current
-    double initial_soc_percent = 0.0;
-    bool initial_is_from_voltage = false;             ///< initial_soc_percent is by the resting voltage
+    std::optional<double> soc_percent;                ///< the initial one less the charge drawn
+    std::optional<double> soc_by_voltage_percent;     ///< by the battery's model from voltage and current
+    InitialCharge initial;                            ///< or the current one, where only the voltage shows it
     std::optional<double> drawn_ah;                   ///< charge drawn since the first retained message
     std::optional<double> voltage_residual_v;         ///< measured less the model's, median of the last minute
     std::optional<double> time_to_reserve_s;          ///< time until the reserve is reached in a continued cruise

@@ -270,12 +270,10 @@ BatteryPrediction predict_battery(const PredictionInput& input, const flight::Fl
     const auto records = battery::discharge_records(data);
     remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
     const auto& record = records.records.back();
-    const double initial_percent = initial_soc_percent(input, record);
-    const auto state_of = [&](const auto& pack) { return state_after(pack, record, initial_percent); };
-    auto result = forecast_battery(*input.battery, input.limits, state_of, prediction);
-    result.initial_is_measured = !input.initial_soc_percent;
-    result.initial_soc_percent = initial_percent;
-    return result;
+    const auto initial = initial_charge(input, record);
+    return forecast_battery(
+        *input.battery, input.limits,
+        {state_after(*input.battery, record, initial.soc_percent), record.charge_ah.back(), initial}, prediction);
 }
 
 /// Throws InputError where the model allows no prediction.
@@ -380,11 +378,12 @@ ModelDeviation model_deviation(const Prediction& prediction, const PredictionInp
                         measured_wh, interval->low_wh, interval->high_wh)};
 }
 
-double initial_soc_percent(const PredictionInput& input, const battery::DischargeRecord& flown) {
-    return input.initial_soc_percent ? *input.initial_soc_percent : initial_soc_by_voltage_percent(input, flown);
+InitialCharge initial_charge(const PredictionInput& input, const battery::DischargeRecord& flown) {
+    return input.initial_soc_percent ? InitialCharge{*input.initial_soc_percent}
+                                     : initial_charge_by_voltage(input, flown);
 }
 
-double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown) {
+InitialCharge initial_charge_by_voltage(const PredictionInput& input, const battery::DischargeRecord& flown) {
     const auto& battery = input.battery.value();
     if (!battery.thevenin) {
         throw InputError({input.battery_file}, "the voltage of this battery does not depend on its state of charge",
@@ -401,7 +400,7 @@ double initial_soc_by_voltage_percent(const PredictionInput& input, const batter
                                      "{:.1f} V when empty",
                                      rest_v, full_v, empty_v),
                          "give the battery of this aircraft");
-    return battery::resting_soc_percent(battery, rest_v);
+    return {battery::resting_soc_percent(battery, rest_v), battery::resting_soc_sd_percent(battery, rest_v)};
 }
 
 Prediction predict_flight(const PredictionInput& input, const FlightProgress& flown, const flight::FlightData& data,
@@ -465,18 +464,28 @@ double high_energy_factor(const Prediction& prediction) {
     return expected_wh > 0.0 ? prediction.interval.high_wh / expected_wh : 1.0;
 }
 
+battery::BatteryState state_for(const BatteryNow& now, double nominal_ah, double capacity_ah, double more_percent) {
+    auto state = now.state;
+    state.soc_percent +=
+        more_percent + units::percentage(now.drawn_ah, nominal_ah) - units::percentage(now.drawn_ah, capacity_ah);
+    state.soc_percent = std::clamp(state.soc_percent, 0.0, units::percent_per_whole);
+    return state;
+}
+
 BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
-                                   const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
-                                   const Prediction& prediction) {
-    const auto forecast = [&](const battery::Battery& pack, double factor) {
+                                   const BatteryNow& now, const Prediction& prediction) {
+    const auto forecast = [&](const battery::Battery& pack, const battery::BatteryState& state, double factor) {
         const double cruise_w = prediction.cruise.remaining_mean_w + prediction.cruise.beyond_w;
-        return battery::forecast_landing(pack, state_of(pack), remaining_power(prediction, factor),
+        return battery::forecast_landing(pack, state, remaining_power(prediction, factor),
                                          cruise_w * (prediction.overtime_s ? 1.0 : factor), limits);
     };
     const auto& interval = battery.intervals.capacity_ah;
     auto smaller = battery;
     if (interval) smaller.capacity_ah = interval->low;
-    return {forecast(battery, 1.0), forecast(smaller, high_energy_factor(prediction)), limits, interval.has_value()};
+    const auto least =
+        state_for(now, battery.capacity_ah, smaller.capacity_ah, -normal_half_width() * now.initial.sd_percent);
+    return {forecast(battery, now.state, 1.0), forecast(smaller, least, high_energy_factor(prediction)), limits,
+            interval.has_value(), now.initial};
 }
 
 ReturnDeadline latest_return(const PredictionInput& input, const Prediction& prediction, battery::BatteryState now) {

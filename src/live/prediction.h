@@ -8,7 +8,6 @@
 #include "path/path_tracker.h"
 #include "path/remaining_path.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,16 +35,28 @@ struct PredictionInput {
     std::string no_prediction_reason = {};    ///< reason why the model allows no prediction; empty if it does
 };
 
+/// A state of charge at the beginning of a record.
+struct InitialCharge {
+    double soc_percent = 0.0;
+    double sd_percent = 0.0;  ///< standard deviation of one by the voltage [points]; 0: given
+};
+
+/// The battery at a moment.
+struct BatteryNow {
+    battery::BatteryState state;
+    double drawn_ah = 0.0;  ///< since the charge was `initial`
+    InitialCharge initial;
+};
+
 /// The prediction of the battery at landing.
 struct BatteryPrediction {
     battery::LandingForecast expected;
-    battery::LandingForecast
-        worst;  ///< at the high end of the energy's interval, and the low end of the capacity's if known
-    battery::LandingLimits limits;         ///< limits of the mission
+    battery::LandingForecast worst;  ///< at the high end of the energy's interval and the low ends of those of the
+                                     ///< capacity and the initial charge, if known
+    battery::LandingLimits limits;   ///< limits of the mission
     bool worst_uses_min_capacity = false;  ///< the interval of the capacity is known
-    double initial_soc_percent = 0.0;
-    bool initial_is_measured = false;     ///< initial_soc_percent is by the resting voltage
-    bool initial_soc_is_current = false;  ///< earlier charge is unknown: `initial_soc_percent` is the current value
+    InitialCharge initial;
+    bool initial_soc_is_current = false;  ///< earlier charge is unknown: `initial` is the current value
 };
 
 /// The prediction of a flight from a moment to its end.
@@ -84,10 +95,10 @@ void require_physical(const mechanical::MechanicalModel& model, const std::strin
 
 /// Returns the state of charge at the start of a record: the given one, else by its resting voltage. The input has a
 /// battery. Throws InputError if neither is available (a battery of constant voltage).
-double initial_soc_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
+InitialCharge initial_charge(const PredictionInput& input, const battery::DischargeRecord& flown);
 
 /// Returns the state of charge at the start of a record by its resting voltage, also if one is given.
-double initial_soc_by_voltage_percent(const PredictionInput& input, const battery::DischargeRecord& flown);
+InitialCharge initial_charge_by_voltage(const PredictionInput& input, const battery::DischargeRecord& flown);
 
 /// Predicts the remaining flight from its progress and its series until now; of a cruise beyond the mission's, a
 /// landing from now. Throws NoResultError if more charge was drawn than available, or an energy below 0 is predicted,
@@ -119,10 +130,13 @@ double energy_j(const std::vector<battery::ConstantLoad>& loads);
 /// Returns the ratio of the high end of the remaining energy's interval to its expectation.
 double high_energy_factor(const Prediction& prediction);
 
-/// Forecasts the battery to the landing. state_of(battery) returns the current state of a battery of that capacity.
+/// Returns the state of the battery if its capacity is another, and its initial charge was `more_percent` higher: from
+/// empty to full.
+battery::BatteryState state_for(const BatteryNow& now, double nominal_ah, double capacity_ah, double more_percent);
+
+/// Forecasts the battery to the landing.
 BatteryPrediction forecast_battery(const battery::Battery& battery, const battery::LandingLimits& limits,
-                                   const std::function<battery::BatteryState(const battery::Battery&)>& state_of,
-                                   const Prediction& prediction);
+                                   const BatteryNow& now, const Prediction& prediction);
 
 /// The latest moment at which the aircraft must turn home.
 struct ReturnDeadline {

@@ -148,18 +148,22 @@ double min_predicted_airspeed_m_per_s(const PhysicalModel& model, bool is_rotorc
     return knows_lift || is_rotorcraft ? 0.0 : model.airspeed_m_per_s.low;
 }
 
+bool is_near_flown_climb(const PhysicalModel& model, double climb_m_per_s) {
+    constexpr double times_more = 1.5;
+    constexpr double level_m_per_s = 0.5;
+    const auto& [sink, climb] = model.climb_m_per_s;
+    return climb_m_per_s >= std::min(times_more * sink, -level_m_per_s) &&
+           climb_m_per_s <= std::max(times_more * climb, level_m_per_s);
+}
+
 bool may_predict_power(const PhysicalModel& model, const FlightState& motion, bool is_rotorcraft) {
     constexpr double max_power_ratio = 2.0;
-    constexpr double times_more_climb = 1.5;
-    constexpr double climb_m_per_s = 0.5;  // of level flight, as gusts make it
     const auto& [low, high] = model.airspeed_m_per_s;
     const double speed = motion.airspeed_m_per_s;
     const double level_w = power_w(model, {speed});
     return speed >= min_predicted_airspeed_m_per_s(model, is_rotorcraft) &&
            speed <= max_predicted_airspeed_m_per_s(model) && level_w <= max_power_ratio * power_w(model, {high}) &&
-           level_w * max_power_ratio >= power_w(model, {low}) &&
-           motion.climb_m_per_s >= std::min(times_more_climb * model.climb_m_per_s.low, -climb_m_per_s) &&
-           motion.climb_m_per_s <= std::max(times_more_climb * model.climb_m_per_s.high, climb_m_per_s);
+           level_w * max_power_ratio >= power_w(model, {low}) && is_near_flown_climb(model, motion.climb_m_per_s);
 }
 
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion) {

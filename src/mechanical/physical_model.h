@@ -189,9 +189,11 @@ double max_predicted_airspeed_m_per_s(const PhysicalModel& model);
 /// term for induced drag, which rises as it flies slower; else 0.
 double min_predicted_airspeed_m_per_s(const PhysicalModel& model, bool is_rotorcraft);
 
+/// Whether a climb or descent is at most 0.5 m/s, as gusts make it in level flight, or half more than flown.
+bool is_near_flown_climb(const PhysicalModel& model, double climb_m_per_s);
+
 /// Whether the model may predict the power of a motion: of an airspeed within both of these, at which level flight takes
-/// at most twice and at least half of the power at the ends of what was flown, and of a climb or descent that is at most
-/// 0.5 m/s, or half more than flown.
+/// at most twice and at least half of the power at the ends of what was flown, and of such a climb.
 bool may_predict_power(const PhysicalModel& model, const FlightState& motion, bool is_rotorcraft);
 
 /// Whether the motion is within the range of the model's flights.

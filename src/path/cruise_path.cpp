@@ -151,19 +151,15 @@ bool has_steep_turn(const PathTrajectory& flown) {
 }
 
 double part_far_beyond(const PlannedPath& plan, const PathTrajectory& flown) {
-    constexpr double part_more = 0.2;      // of the airspeed: the drag is 44 % more
-    constexpr double climb_m_per_s = 0.5;  // of a climb between level ends, as gusts make it
-    constexpr double times_more_climb = 1.5;
+    constexpr double part_more = 0.2;  // of the airspeed: the drag is 44 % more
     const auto& [slowest_flown, fastest] = plan.power.airspeed_m_per_s;
-    const auto& [sink, climb] = plan.power.climb_m_per_s;
     const double slowest = plan.turns && plan.turns->is_rotorcraft ? 0.0 : slowest_flown;  // all hover
     double beyond_s = 0.0;
     for (const auto& piece : flown.pieces) {
         const auto& motion = piece.motion;
         const bool is_near = motion.airspeed_m_per_s >= slowest * (1.0 - part_more) &&
                              motion.airspeed_m_per_s <= fastest * (1.0 + part_more) &&
-                             motion.climb_m_per_s >= times_more_climb * std::min(sink, -climb_m_per_s) &&
-                             motion.climb_m_per_s <= times_more_climb * std::max(climb, climb_m_per_s);
+                             is_near_flown_climb(plan.power, motion.climb_m_per_s);
         if (!is_near) beyond_s += piece.time_s;
     }
     return flown.duration_s > 0.0 ? beyond_s / flown.duration_s : 0.0;

@@ -94,6 +94,14 @@ TEST(LandingForecast, FindsTheChargeOfAVoltageAtRest) {
     EXPECT_NEAR(resting_soc_percent(thevenin(), 1.0), 0.0, 1e-9);
 }
 
+TEST(LandingForecast, TheChargeOfAPartUsedPackIsLessCertain) {
+    EXPECT_NEAR(resting_soc_sd_percent(thevenin(), 12.0), 1.0, 1e-9) << "10 mV a cell of three, 30 mV a point";
+    EXPECT_NEAR(resting_soc_sd_percent(thevenin(), 11.0), std::hypot(1.0, 10.0), 1e-9) << "0.3 of the fall of 1 V";
+    auto uncertain = thevenin();
+    uncertain.intervals.open_circuit_standard_error_v = {0.06, 0.06};
+    EXPECT_NEAR(resting_soc_sd_percent(uncertain, 12.0), std::hypot(1.0, 2.0), 1e-9);
+}
+
 TEST(LandingForecast, StartsFromWhatWasDrawn) {
     DischargeRecord record;
     for (int i = 0; i <= 200; ++i) {

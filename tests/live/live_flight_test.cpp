@@ -434,6 +434,37 @@ TEST(LiveFlight, TheChanceOfLandingBelowTheReserveFollowsTheInterval) {
     EXPECT_NEAR(state_with(99.0).battery->probability_below_reserve.value(), 1.0, 1e-9);
 }
 
+/// Against the sum over initial charges of the chances with each.
+TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheInitialChargesSpread) {
+    const auto messages = test::messages_of(test::sample(1), 400.0);
+    const auto battery_with = [&](double reserve_percent, std::optional<double> initial_percent) {
+        auto basis = test::wing_basis();
+        basis.limits.reserve_soc_percent = reserve_percent;
+        basis.initial_soc_percent = initial_percent;
+        basis.battery->intervals.capacity_ah.reset();
+        LiveFlight flight(test::options_of(test::sample(1)), basis, nullptr);
+        test::receive_all(flight, messages);
+        return flight.update();
+    };
+    const auto by_voltage = battery_with(0.0, std::nullopt);
+    const auto [initial_percent, sd_percent] = by_voltage.battery->initial;
+    ASSERT_GT(sd_percent, 0.5);
+    const double expected = by_voltage.prediction->battery->expected.soc_percent;
+    for (const double above_percent : {-2.0, 0.0, 2.0}) {
+        double weights = 0.0;
+        double chance = 0.0;
+        for (int i = -9; i <= 9; ++i) {
+            const double z = 0.4 * i;
+            const double weight = std::exp(-0.5 * z * z);
+            const auto given = battery_with(expected + above_percent, initial_percent + z * sd_percent);
+            weights += weight;
+            chance += weight * given.battery->probability_below_reserve.value();
+        }
+        const auto state = battery_with(expected + above_percent, std::nullopt);
+        EXPECT_NEAR(state.battery->probability_below_reserve.value(), chance / weights, 0.02) << above_percent;
+    }
+}
+
 /// Against the sum over capacities of the chances with each.
 TEST(LiveFlight, TheChanceOfLandingBelowTheReserveHoldsTheCapacitysSpread) {
     const auto messages = test::messages_of(test::sample(1), 400.0);

@@ -33,18 +33,22 @@ TEST(Prediction, FliesTheBatteryThroughTheRest) {
     battery::Battery battery;
     battery.capacity_ah = 1.0;
     battery.voltage_v = 10.0;
-    battery::DischargeRecord flown;
-    flown.time_s = {0.0, 100.0};
-    flown.charge_ah = {0.0, 0.1};
+    BatteryNow now{{90.0, 0.0}, 0.1, {100.0}};
     auto prediction = made_up();
-    const auto state_of = [&](const auto& pack) { return state_after(pack, flown, 100.0); };
-    auto of = forecast_battery(battery, {}, state_of, prediction);
+    auto of = forecast_battery(battery, {}, now, prediction);
     EXPECT_NEAR(of.expected.soc_now_percent, 90.0, 1e-9);
     EXPECT_NEAR(of.expected.soc_percent, 65.0, 1e-6) << "2.5 Wh of 10 Wh";
     EXPECT_NEAR(of.worst.soc_percent, 60.0, 1e-6) << "3 Wh at the high end";
     prediction.landing_s = 0.0;  // a mission without one
-    of = forecast_battery(battery, {}, state_of, prediction);
+    of = forecast_battery(battery, {}, now, prediction);
     EXPECT_NEAR(of.expected.soc_percent, 70.0, 1e-6);
+    battery.intervals.capacity_ah = Interval{0.5, 2.0};
+    now.initial.sd_percent = 10.0;  // by the voltage at rest
+    of = forecast_battery(battery, {}, now, prediction);
+    EXPECT_NEAR(of.expected.soc_now_percent, 90.0, 1e-9);
+    EXPECT_NEAR(of.worst.soc_now_percent, 100.0 - 19.6 - 20.0, 0.01) << "0.1 Ah of 0.5 Ah";
+    now.initial.sd_percent = 50.0;
+    EXPECT_EQ(forecast_battery(battery, {}, now, prediction).worst.fails_after_s, 0.0) << "it may be empty";
 }
 
 TEST(Prediction, ThePowerAheadKeepsItsCourseAlongAPath) {
@@ -71,7 +75,7 @@ TEST(Prediction, RefusesTheBatteryOfAnotherAircraft) {
     const auto refusal_at = [&](double rest_v) {
         battery::DischargeRecord flown;
         flown.resting_voltage_v = rest_v;
-        return test::rejected([&] { initial_soc_percent(basis, flown); });
+        return test::rejected([&] { initial_charge(basis, flown); });
     };
     EXPECT_THAT(refusal_at(24.9), testing::HasSubstr("pack.toml: the pack of the flight has 24.9 V at rest"));
     EXPECT_NE(refusal_at(7.4), "");
@@ -97,9 +101,10 @@ TEST(Prediction, NamesACruiseThatIsNotOfItsModel) {
 TEST(Prediction, ABatteryOfConstantVoltageNeedsItsStateOfCharge) {
     PredictionInput basis;
     basis.battery = battery::Battery{};
-    EXPECT_THROW(initial_soc_percent(basis, {}), InputError);
+    EXPECT_THROW(initial_charge(basis, {}), InputError);
     basis.initial_soc_percent = 80.0;
-    EXPECT_EQ(initial_soc_percent(basis, {}), 80.0);
+    EXPECT_EQ(initial_charge(basis, {}).soc_percent, 80.0);
+    EXPECT_EQ(initial_charge(basis, {}).sd_percent, 0.0) << "given";
 }
 
 using testing::HasSubstr;

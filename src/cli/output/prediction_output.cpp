@@ -58,6 +58,21 @@ std::string landing_text(const battery::LandingForecast& forecast, const battery
                : text;
 }
 
+std::string initial_text(const live::InitialCharge& initial) {
+    if (!(initial.sd_percent > 0.0)) return "as given";
+    return fmt::format("+-{:.0f} by its voltage at rest", normal_half_width() * initial.sd_percent);
+}
+
+/// What the lower forecast assumes.
+std::string worst_text(const BatteryPrediction& battery) {
+    const bool has_sd = battery.initial.sd_percent > 0.0;
+    if (!has_sd && !battery.worst_uses_min_capacity) return "at the high end of the energy's interval";
+    return fmt::format("with the most energy and the least {} of their 95 % intervals",
+                       !has_sd                           ? "capacity"
+                       : battery.worst_uses_min_capacity ? "capacity and charge"
+                                                         : "charge");
+}
+
 std::string battery_text(const std::optional<BatteryPrediction>& battery) {
     if (!battery) return "";
     return fmt::format(
@@ -66,11 +81,8 @@ std::string battery_text(const std::optional<BatteryPrediction>& battery) {
         battery->expected.soc_now_percent,
         battery->initial_soc_is_current
             ? ""
-            : fmt::format(", from {:.1f} % {}", battery->initial_soc_percent,
-                          battery->initial_is_measured ? "by its voltage at rest" : "as given"),
-        landing_text(battery->expected, battery->limits),
-        battery->worst_uses_min_capacity ? "with the most energy and the least capacity of their 95 % intervals"
-                                         : "at the high end of the energy's interval",
+            : fmt::format(", from {:.1f} % {}", battery->initial.soc_percent, initial_text(battery->initial)),
+        landing_text(battery->expected, battery->limits), worst_text(*battery),
         landing_text(battery->worst, battery->limits));
 }
 
@@ -219,11 +231,13 @@ namespace flightwatt::live {
 
 Fields<BatteryPrediction> record_fields(const BatteryPrediction*) {
     using R = BatteryPrediction;
-    return {
-        field("initial_soc_percent", &R::initial_soc_percent, "at the beginning of the log"),
-        field("soc_now_percent", at(&R::expected, &battery::LandingForecast::soc_now_percent), "now"),
-        field("at_landing", &R::expected, "as expected"),
-        field("at_landing_high_energy", &R::worst, "at the high end of the energy and the low end of the capacity")};
+    return {field("initial_soc_percent", at(&R::initial, &InitialCharge::soc_percent), "at the beginning of the log"),
+            field("initial_soc_sd_percent", at(&R::initial, &InitialCharge::sd_percent),
+                  "its standard deviation; 0: not by the voltage at rest"),
+            field("soc_now_percent", at(&R::expected, &battery::LandingForecast::soc_now_percent), "now"),
+            field("at_landing", &R::expected, "as expected"),
+            field("at_landing_high_energy", &R::worst,
+                  "at the high end of the energy, and the low ends of capacity and initial charge")};
 }
 
 Fields<Prediction> record_fields(const Prediction*) {

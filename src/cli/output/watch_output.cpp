@@ -28,12 +28,13 @@ Fields<ReturnDeadline> record_fields(const ReturnDeadline*) {
 Fields<LiveBattery> record_fields(const LiveBattery*) {
     using R = LiveBattery;
     const auto initial = [](const R& battery) {
-        return battery.soc_percent ? std::optional(battery.initial_soc_percent) : std::nullopt;
+        return battery.soc_percent ? std::optional(battery.initial.soc_percent) : std::nullopt;
     };
     return {field("soc_percent", &R::soc_percent, "initial state of charge less the charge drawn"),
             field("soc_by_voltage_percent", &R::soc_by_voltage_percent, "by the battery model at this voltage"),
             field("initial_soc_percent", initial, "at the beginning"),
-            field("initial_is_measured", &R::initial_is_from_voltage, "from the voltage at rest"),
+            field("initial_soc_sd_percent", at(&R::initial, &InitialCharge::sd_percent),
+                  "its standard deviation; 0: not by the voltage at rest"),
             field("drawn_ah", &R::drawn_ah, "charge drawn since the beginning"),
             field("voltage_off_v", &R::voltage_residual_v, "measured less model, median of the last minute"),
             field("reserve_in_s", &R::time_to_reserve_s, "cruise time until the reserve is reached"),

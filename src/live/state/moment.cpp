@@ -230,7 +230,7 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
     const double left_percent = initial_soc_percent - units::percentage(drawn_ah, capacity_ah);
     if (!(drawn_ah > 0.0) || !(left_percent > 0.0)) return;  // it does not count, restarted, or counts another pack
     result.drawn_ah = drawn_ah;
-    result.initial_soc_percent = initial_soc_percent;
+    result.initial = {initial_soc_percent};
     result.soc_percent = left_percent;
     result.state = battery::BatteryState{left_percent, 0.0};
 }

@@ -30,7 +30,7 @@ void compare_voltage(const battery::Battery& battery, const battery::DischargeRe
         const double lost_v =
             battery.resistance_ohm * record.current_a[i] + battery.thevenin->rc_resistance_ohm * settled_a[i];
         rest_v.push_back(record.voltage_v[i] + lost_v);
-        const auto soc = soc_at(battery, record, result.initial_soc_percent, record.time_s[i]);
+        const auto soc = soc_at(battery, record, result.initial.soc_percent, record.time_s[i]);
         off_v.push_back(rest_v.back() - open_circuit_voltage_v(battery, std::clamp(*soc, 0.0, 100.0)));
     }
     if (off_v.size() < enough_samples) return;
@@ -49,40 +49,38 @@ void estimate_soc_from_voltage(const battery::Battery& battery, const flight::Fl
         rest_v.push_back(voltage.value[i] + battery.resistance_ohm * current_a);
     }
     if (rest_v.size() < enough_samples) return;
-    result.soc_by_voltage_percent = battery::resting_soc_percent(battery, median(std::move(rest_v)));
+    const double now_v = median(std::move(rest_v));
+    result.soc_by_voltage_percent = battery::resting_soc_percent(battery, now_v);
+    result.initial = {*result.soc_by_voltage_percent, battery::resting_soc_sd_percent(battery, now_v)};
     result.state = battery::BatteryState{*result.soc_by_voltage_percent, 0.0};
 }
 
-/// State of charge at landing above the reserve, for a factor of the expected energy and a deviation of the capacity in
-/// standard deviations, as in draws of flights.
+/// State of charge at landing above the reserve, for a factor of the expected energy and deviations of the capacity and
+/// the initial charge in standard deviations, as in draws of flights.
 double surplus_percent(const PredictionInput& input, const Prediction& prediction, const LiveBattery& now,
-                       battery::Battery& battery, double energy_factor, double capacity_sds) {
+                       battery::Battery& battery, double energy_factor, double capacity_sds, double charge_sds) {
     const double nominal_ah = input.battery->capacity_ah;
     if (const auto& interval = battery.intervals.capacity_ah) {
         const double half_width_ah = capacity_sds < 0.0 ? nominal_ah - interval->low : interval->high - nominal_ah;
         const double capacity_ah = nominal_ah + capacity_sds * half_width_ah / normal_half_width();
         battery.capacity_ah = std::max(0.01 * nominal_ah, capacity_ah);
     }
-    auto state = now.state.value();
-    const double drawn_ah = now.soc_percent ? now.drawn_ah.value_or(0.0) : 0.0;
-    state.soc_percent += units::percentage(drawn_ah, nominal_ah) - units::percentage(drawn_ah, battery.capacity_ah);
+    const auto state = state_for({now.state.value(), now.soc_percent ? now.drawn_ah.value_or(0.0) : 0.0, now.initial},
+                                 nominal_ah, battery.capacity_ah, charge_sds * now.initial.sd_percent);
     if (!(state.soc_percent > 0.0)) return failed_percent;
-    state.soc_percent = std::min(state.soc_percent, units::percent_per_whole);
     const auto ahead = remaining_power(prediction, std::max(0.0, energy_factor));
     const auto landing = battery::forecast_landing(battery, state, ahead, 0.0, input.limits);
     return landing.fails_after_s ? failed_percent : landing.soc_percent - input.limits.reserve_soc_percent;
 }
 
 /// The state of charge where the record begins: continued, given or by the resting voltage.
-void set_initial(const PredictionInput& input, const std::optional<double>& carried_percent,
-                 const battery::DischargeRecord& record, LiveBattery& result) {
-    result.initial_is_from_voltage = !input.initial_soc_percent;
-    const bool continues = carried_percent && !record.is_other_pack;
-    result.initial_soc_percent = continues ? *carried_percent : initial_soc_percent(input, record);
-    if (!continues || !input.battery->thevenin) return;
-    const double by_voltage = initial_soc_by_voltage_percent(input, record);
-    result.initial_is_from_voltage = by_voltage > result.initial_soc_percent + other_pack_percent;
-    if (result.initial_is_from_voltage) result.initial_soc_percent = by_voltage;
+InitialCharge initial_of(const PredictionInput& input, const std::optional<InitialCharge>& carried,
+                         const battery::DischargeRecord& record) {
+    const bool continues = carried && !record.is_other_pack;
+    if (!continues) return initial_charge(input, record);
+    if (!input.battery->thevenin) return *carried;
+    const auto by_voltage = initial_charge_by_voltage(input, record);
+    return by_voltage.soc_percent > carried->soc_percent + other_pack_percent ? by_voltage : *carried;
 }
 
 }  // namespace
@@ -95,15 +93,15 @@ std::optional<double> soc_at(const battery::Battery& battery, const battery::Dis
     return initial_soc_percent - units::percentage(record.charge_ah[index], battery.capacity_ah);
 }
 
-LiveBattery estimate_soc(const PredictionInput& input, const std::optional<double>& carried_percent,
+LiveBattery estimate_soc(const PredictionInput& input, const std::optional<InitialCharge>& carried,
                          const flight::FlightData& data, std::optional<battery::DischargeRecord>& record) {
     const auto& battery = input.battery.value();
     LiveBattery result;
     try {
         record = battery::discharge_records(data).records.back();
-        set_initial(input, carried_percent, *record, result);
+        result.initial = initial_of(input, carried, *record);
         result.drawn_ah = record->charge_ah.back();
-        result.state = state_after(battery, *record, result.initial_soc_percent);
+        result.state = state_after(battery, *record, result.initial.soc_percent);
         result.state->soc_percent =
             std::min(result.state->soc_percent, units::percent_per_whole);  // a counter ran back
         result.soc_percent = result.state->soc_percent;
@@ -121,18 +119,20 @@ std::optional<double> probability_below_reserve(const PredictionInput& input, co
     if (!rest.uncertainty_known || !(rest.energy_wh > 0.0)) return std::nullopt;
     const double energy_sd = std::sqrt(rest.variance_wh2) / rest.energy_wh;
     auto battery = input.battery.value();  // a copy for all evaluations
-    const auto surplus = [&](double energy_sds, double capacity_sds) {
-        return surplus_percent(input, prediction, now, battery, 1.0 + energy_sds * energy_sd, capacity_sds);
+    const auto surplus = [&](double energy_sds, double capacity_sds, double charge_sds) {
+        return surplus_percent(input, prediction, now, battery, 1.0 + energy_sds * energy_sd, capacity_sds, charge_sds);
     };
     // Direction to the most probable failure: each quantity in proportion to the effect of its deviation.
-    const double expected = surplus(0.0, 0.0);
-    const double energy_effect = std::max(0.0, expected - surplus(1.0, 0.0));
+    const double expected = surplus(0.0, 0.0, 0.0);
+    const double energy_effect = std::max(0.0, expected - surplus(1.0, 0.0, 0.0));
     const double capacity_effect =
-        input.battery->intervals.capacity_ah ? std::max(0.0, expected - surplus(0.0, -1.0)) : 0.0;
-    const double both = std::hypot(energy_effect, capacity_effect);
-    const double by_energy = both > 0.0 ? energy_effect / both : 1.0;
-    const double by_capacity = both > 0.0 ? capacity_effect / both : 0.0;
-    const auto along = [&](double sds) { return surplus(sds * by_energy, -sds * by_capacity); };
+        input.battery->intervals.capacity_ah ? std::max(0.0, expected - surplus(0.0, -1.0, 0.0)) : 0.0;
+    const double charge_effect = now.initial.sd_percent > 0.0 ? std::max(0.0, expected - surplus(0.0, 0.0, -1.0)) : 0.0;
+    const double all = std::hypot(energy_effect, capacity_effect, charge_effect);
+    const double by_energy = all > 0.0 ? energy_effect / all : 1.0;
+    const double by_capacity = all > 0.0 ? capacity_effect / all : 0.0;
+    const double by_charge = all > 0.0 ? charge_effect / all : 0.0;
+    const auto along = [&](double sds) { return surplus(sds * by_energy, -sds * by_capacity, -sds * by_charge); };
     const double at_low = along(-max_sds);
     const double at_high = along(max_sds);
     if (!(at_low > 0.0)) return 1.0;
