@@ -21,7 +21,7 @@ std::vector<Flight> find_flights(const Log& log) {
     const flight::PowerStatistics statistics(loaded.data);
     std::vector<Flight> flights;
     for (std::size_t i = 0; i < loaded.phases.sorties.size(); ++i) {
-        auto& flight = flights.emplace_back(Flight{mechanical::sortie_name(log.name(), i), {}});
+        auto& flight = flights.emplace_back(Flight{mechanical::sortie_name(log.name(), i + 1), {}});
         for (const auto& span : loaded.phases.sorties[i].phases) {
             const auto measured = statistics.between(span.start.time_s, span.end.time_s);
             flight.parts.push_back({static_cast<Phase>(span.phase), span.start.time_s, span.end.time_s,

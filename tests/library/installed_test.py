@@ -105,6 +105,15 @@ def compare_phases(examples, program, log):
             sys.exit(f"read_log has {line}, segment {phase}")
 
 
+def compare_names(examples, program, model, folder):
+    """The second flight of a log is its #2, as in segment and batch."""
+    run([program, "synthesize", model, "-o", folder / "sorties", "--anomaly", "two-sorties"])
+    log = next((folder / "sorties").glob("*.data"))
+    names = re.findall(r"^  (\S+): \S+ Wh in", run([examples / "read_log", log]), re.M)
+    if names != [log.stem, f"{log.stem}#2"]:
+        sys.exit(f"the flights of {log.name} are named {names}")
+
+
 def compare_files(examples, program, logs, folder):
     """What fit_model and identify_pack write next to the files of fit and battery."""
     run([examples / "fit_model", folder / "m.toml", *logs])
@@ -133,6 +142,7 @@ def main():
     program = build / "bin/flightwatt"
     logs = sorted((source / "logs").glob("*.data"))
     compare_phases(examples, program, logs[0])
+    compare_names(examples, program, source / "fits/mechanical/synthetic-wing.toml", folder)
     compare_files(examples, program, logs, folder)
     compare_mission(examples, program, source / "missions/paper/adaptive.toml")
     waiting = run([examples / "mavlink_predictor", source / "missions/synthetic/survey-path.toml", os.devnull])
