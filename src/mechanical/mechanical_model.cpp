@@ -318,10 +318,17 @@ MechanicalModel with_decided_power(MechanicalModel model) {
 }
 
 double power_w(const FourierModel& model, double time_s) {
+    if (model.cos_w.empty()) return model.a0_w;
+    const double c = std::cos(model.omega_rad_per_s * time_s);
+    const double s = std::sin(model.omega_rad_per_s * time_s);
     double power = model.a0_w;
+    double cos_n = c;
+    double sin_n = s;
     for (std::size_t n = 0; n < model.cos_w.size(); ++n) {
-        const double angle = static_cast<double>(n + 1) * model.omega_rad_per_s * time_s;
-        power += model.cos_w[n] * std::cos(angle) + model.sin_w[n] * std::sin(angle);
+        power += model.cos_w[n] * cos_n + model.sin_w[n] * sin_n;
+        const double next = cos_n * c - sin_n * s;
+        sin_n = sin_n * c + cos_n * s;
+        cos_n = next;
     }
     return power;
 }
