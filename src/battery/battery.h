@@ -72,8 +72,8 @@ struct Battery {
 /// more than 5 points, or have other monitors. Empty where the first monitor counts all.
 std::vector<flight::MonitorShare> common_monitors(const std::vector<std::vector<flight::MonitorShare>>& flights);
 
-/// Standard deviations of the voltage of a pack at rest, as packs relax for an hour: 10 mV a cell after charging, and 0.3
-/// of the fall below the full one.
+/// Standard deviations of the voltage of a pack at rest, as packs relax for an hour: 10 mV a cell after charging, and
+/// 0.3 of the fall below the full one.
 inline constexpr double charged_rest_sd_v = 0.01;
 inline constexpr double lower_rest_fraction = 0.3;
 

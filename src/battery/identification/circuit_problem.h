@@ -30,8 +30,8 @@ struct JointCircuitFit {
 
 /// Prior of a pack, as standard deviations. A resting voltage differs from the curve under load, because a pack relaxes
 /// for an hour: by a common 50 mV a cell, and in each flight by charged_rest_sd_v a cell and lower_rest_fraction of the
-/// difference to the fullest. The curve's slope changes by some 0.15 V a segment and cell. A cold pack that warms loses 3 % of its
-/// resistance a kelvin, and takes 6 J a kelvin and Wh that it stores.
+/// difference to the fullest. The curve's slope changes by some 0.15 V a segment and cell. A cold pack that warms loses
+/// 3 % of its resistance a kelvin, and takes 6 J a kelvin and Wh that it stores.
 inline constexpr double common_rest_sd_v = 0.05;
 inline constexpr double slope_change_sd_v = 0.15;
 inline constexpr double warming_sd_wh_per_j = resistance_fall_per_k / 6.0;

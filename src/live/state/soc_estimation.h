@@ -11,7 +11,8 @@
 namespace flightwatt::live {
 
 /// Estimates the state of charge at the end of the data by the charge drawn and by voltage; without a usable record (at
-/// rest, or started in flight) by voltage alone. `carried` is the known state of charge at the start of the data. Sets `record` to the record used.
+/// rest, or started in flight) by voltage alone. `carried` is the known state of charge at the start of the data. Sets
+/// `record` to the record used.
 LiveBattery estimate_soc(const PredictionInput& input, const std::optional<InitialCharge>& carried,
                          const flight::FlightData& data, std::optional<battery::DischargeRecord>& record);
 
@@ -20,8 +21,8 @@ std::optional<double> soc_at(const battery::Battery& battery, const battery::Dis
                              double initial_soc_percent, double time_s);
 
 /// Returns the probability of landing below the reserve or not at all, by a first-order reliability method from the
-/// predictive distributions of the energy (Student's t), of the capacity and of the initial charge (normal, if uncertain;
-/// docs/live.md); std::nullopt without a known uncertainty. `now` has a state.
+/// predictive distributions of the energy (Student's t), of the capacity and of the initial charge (normal, if
+/// uncertain; docs/methods.md); std::nullopt without a known uncertainty. `now` has a state.
 std::optional<double> probability_below_reserve(const PredictionInput& input, const Prediction& prediction,
                                                 const LiveBattery& now);
 
