@@ -1,11 +1,10 @@
 #include "telemetry/link_encoder.h"
 
 #include "base/number.h"
+#include "telemetry/binary/wire_value.h"
 #include "telemetry/text/lines.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <concepts>
 #include <cstdint>
@@ -15,16 +14,6 @@
 
 namespace flightwatt::telemetry {
 namespace {
-
-template <typename Number>
-void append_bytes(Number number, std::string& bytes) {
-    const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-    if constexpr (std::endian::native == std::endian::little) {
-        bytes.append(raw.begin(), raw.end());
-    } else {
-        bytes.append(raw.rbegin(), raw.rend());
-    }
-}
 
 template <typename Number>
 std::optional<Number> parse_element(std::string_view word) {
@@ -47,7 +36,7 @@ bool append_element(WireType type, std::string_view word, std::string& bytes) {
             return word.size() == 1;
         } else {
             const auto number = parse_element<T>(word);
-            if (number) append_bytes(*number, bytes);
+            if (number) bytes += wire_bytes(*number);
             return number.has_value();
         }
     });

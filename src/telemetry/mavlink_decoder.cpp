@@ -1,5 +1,6 @@
 #include "telemetry/mavlink_decoder.h"
 
+#include "telemetry/binary/wire_value.h"
 #include "telemetry/mavlink/entries.h"
 #include "telemetry/mavlink/vehicles.h"
 
@@ -8,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::telemetry {
@@ -101,10 +103,7 @@ std::optional<MavlinkPacket> read_mavlink_packet(std::string_view bytes) {
 
 std::string tlog_entry(double unix_s, std::string_view packet) {
     const auto time_us = static_cast<std::uint64_t>(std::llround(unix_s * 1e6));
-    std::string entry;
-    for (int shift = 56; shift >= 0; shift -= 8) entry += static_cast<char>(time_us >> static_cast<unsigned>(shift));
-    entry += packet;
-    return entry;
+    return wire_bytes(boost::endian::endian_reverse(time_us)).append(packet);
 }
 
 }  // namespace flightwatt::telemetry

@@ -1,34 +1,25 @@
 #include "telemetry/mavlink_sender.h"
 
+#include "telemetry/binary/wire_value.h"
 #include "telemetry/mavlink/messages.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
 namespace flightwatt::telemetry {
 namespace {
 
-template <typename T>
-std::string bytes_of(T value) {
-    std::string bytes;
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof value);  // little-endian, as all machines that FlightWatt is built for
-    for (std::size_t i = 0; i < sizeof value; ++i) bytes += static_cast<char>(bits >> (8 * i));
-    return bytes;
-}
-
-std::string wire_bytes(WireType type, double value) {
+std::string field_bytes(WireType type, double value) {
     return with_wire_type(type, [&]<typename T>() {
-        if constexpr (std::is_floating_point_v<T>) return bytes_of(static_cast<T>(value));
-        if (std::isnan(value)) return bytes_of(T{0});
+        if constexpr (std::is_floating_point_v<T>) return wire_bytes(static_cast<T>(value));
+        if (std::isnan(value)) return wire_bytes(T{0});
         constexpr auto low = static_cast<double>(std::numeric_limits<T>::lowest());
         constexpr auto high = static_cast<double>(std::numeric_limits<T>::max());
         const double rounded = std::round(value);
-        if (rounded >= high) return bytes_of(std::numeric_limits<T>::max());
-        return bytes_of(static_cast<T>(std::max(rounded, low)));
+        if (rounded >= high) return wire_bytes(std::numeric_limits<T>::max());
+        return wire_bytes(static_cast<T>(std::max(rounded, low)));
     });
 }
 
@@ -45,15 +36,14 @@ std::string MavlinkSender::packet(std::string_view message, const Values& values
         const auto end = i + 1 < fields.size() ? fields[i + 1].offset : payload.size();
         if (fields[i].type == WireType::text) put(fields[i].offset, text.substr(0, end - fields[i].offset));
         const auto value = values.find(fields[i].name);
-        if (value != values.end()) put(fields[i].offset, wire_bytes(fields[i].type, value->second));
+        if (value != values.end()) put(fields[i].offset, field_bytes(fields[i].type, value->second));
     }
     while (payload.size() > 1 && payload.back() == '\0') payload.pop_back();
     std::string head{
         static_cast<char>(payload.size()), '\0', '\0', static_cast<char>(sequence_++), static_cast<char>(system_),
         static_cast<char>(component_)};
-    head += bytes_of(definition.id).substr(0, 3);
-    const auto seed = std::string(1, static_cast<char>(definition.crc_extra));
-    return "\xFD" + head + payload + bytes_of(mavlink_checksum(seed, mavlink_checksum(head + payload)));
+    head += wire_bytes(definition.id).substr(0, 3);
+    return "\xFD" + head + payload + wire_bytes(mavlink_checksum(head + payload, definition.crc_extra));
 }
 
 std::string MavlinkSender::heartbeat() {

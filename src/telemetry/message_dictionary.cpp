@@ -12,22 +12,12 @@
 namespace flightwatt::telemetry {
 namespace {
 
-std::optional<WireType> wire_type_of(std::string_view name) {
-    static constexpr std::pair<std::string_view, WireType> types[] = {
-        {"uint8", WireType::uint8},   {"int8", WireType::int8},      {"uint16", WireType::uint16},
-        {"int16", WireType::int16},   {"uint32", WireType::uint32},  {"int32", WireType::int32},
-        {"float", WireType::float32}, {"double", WireType::float64}, {"char", WireType::text},
-        {"uint64", WireType::uint64}, {"int64", WireType::int64},
-    };
-    const auto* const found = std::ranges::find(types, name, &std::pair<std::string_view, WireType>::first);
-    return found == std::end(types) ? std::nullopt : std::optional(found->second);
-}
-
 /// "uint8", "float[3]", "char[]", "string".
 std::optional<WireField> wire_field_of(std::string_view type) {
     if (type == "string") return WireField{WireType::text, WireCount::counted, 0};
     const auto bracket = type.find('[');
-    const auto element = wire_type_of(type.substr(0, bracket));
+    const auto name = std::string(type.substr(0, bracket));
+    const auto element = wire_type_of(name.find("int") == std::string::npos ? name : name + "_t");
     if (!element) return std::nullopt;
     if (bracket == std::string_view::npos) return WireField{*element, WireCount::one, 1};
     if (!type.ends_with(']')) return std::nullopt;
@@ -71,6 +61,16 @@ std::string_view to_string(Framing framing) {
 }
 
 std::string_view to_string(LinkVersion version) { return version == LinkVersion::v1 ? "pprzlink v1" : "pprzlink v2"; }
+
+std::optional<WireType> wire_type_of(std::string_view name) {
+    static constexpr std::pair<std::string_view, WireType> types[] = {
+        {"int8_t", WireType::int8},     {"uint8_t", WireType::uint8},   {"int16_t", WireType::int16},
+        {"uint16_t", WireType::uint16}, {"int32_t", WireType::int32},   {"uint32_t", WireType::uint32},
+        {"int64_t", WireType::int64},   {"uint64_t", WireType::uint64}, {"float", WireType::float32},
+        {"double", WireType::float64},  {"char", WireType::text}};
+    const auto* const found = std::ranges::find(types, name, &std::pair<std::string_view, WireType>::first);
+    return found == std::end(types) ? std::nullopt : std::optional(found->second);
+}
 
 bool WireMessage::fits_counted(std::string_view payload) const {
     std::size_t at = 0;

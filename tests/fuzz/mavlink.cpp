@@ -28,8 +28,7 @@ std::string with_checksums(std::string bytes) {
         const auto* message = telemetry::find_mavlink_message(id);
         if (message == nullptr) continue;
         const auto checked = header + byte(at + 1);
-        const std::string seed(1, static_cast<char>(message->crc_extra));
-        const auto crc = telemetry::mavlink_checksum(seed, telemetry::mavlink_checksum(rest.substr(1, checked - 1)));
+        const auto crc = telemetry::mavlink_checksum(rest.substr(1, checked - 1), message->crc_extra);
         bytes[at + checked] = static_cast<char>(crc & 0xFFU);
         bytes[at + checked + 1] = static_cast<char>(crc >> 8U);
         at += size - 1;

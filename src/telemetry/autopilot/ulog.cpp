@@ -39,14 +39,8 @@ struct UlogField {
     bool is_array = false;  ///< "float[1] control" is one too
 };
 
-std::optional<WireType> wire_type(std::string_view name) {
-    constexpr std::pair<std::string_view, WireType> types[] = {
-        {"int8_t", WireType::int8},     {"uint8_t", WireType::uint8},   {"int16_t", WireType::int16},
-        {"uint16_t", WireType::uint16}, {"int32_t", WireType::int32},   {"uint32_t", WireType::uint32},
-        {"int64_t", WireType::int64},   {"uint64_t", WireType::uint64}, {"float", WireType::float32},
-        {"double", WireType::float64},  {"bool", WireType::uint8},      {"char", WireType::text}};
-    const auto* const found = std::ranges::find(types, name, &std::pair<std::string_view, WireType>::first);
-    return found == std::end(types) ? std::nullopt : std::optional(found->second);
+std::optional<WireType> ulog_type_of(std::string_view name) {
+    return name == "bool" ? WireType::uint8 : wire_type_of(name);
 }
 
 /// "float[3] xyz"; std::nullopt if it is no field.
@@ -216,7 +210,7 @@ class UlogReader {
         auto& information = rows_.facts().information;
         auto& parameters = rows_.facts().parameters;
         if (!key || information.size() + parameters.size() >= max_entries) return;
-        const auto type = wire_type(key->type);
+        const auto type = ulog_type_of(key->type);
         const bool is_number = type && key->elements == 1 && value.size() == size_of(*type);
         if (is_number && is_parameter) parameters.emplace(key->name, wire_value(*type, value.data()));
         if (key->type == "char" && !is_parameter) information.emplace(key->name, value.substr(0, max_text));
@@ -227,7 +221,7 @@ class UlogReader {
         const auto format = formats_.find(type);
         if (format == formats_.end() || depth > max_nesting) return false;
         for (const auto& field : format->second) {
-            const auto basic = wire_type(field.type);
+            const auto basic = ulog_type_of(field.type);
             for (std::size_t i = 0; i < field.elements; ++i) {
                 auto name = prefix + (field.is_array ? fmt::format("{}[{}]", field.name, i) : field.name);
                 if (!basic && !add_fields(field.type, name + ".", depth + 1, topic)) return false;

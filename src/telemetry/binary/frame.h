@@ -1,5 +1,6 @@
 #pragma once
 
+#include "telemetry/binary/wire_value.h"
 #include "telemetry/message_dictionary.h"
 
 #include <array>
@@ -80,8 +81,7 @@ inline ParseStatus parse_card_frame(const char* p, const char* end, Frame& frame
     frame.size = size;
     frame.message = {p + 7, length};
     frame.source = byte_at(p + 2);
-    frame.time_100us = byte_at(p + 3) | std::uint32_t{byte_at(p + 4)} << 8 | std::uint32_t{byte_at(p + 5)} << 16 |
-                       std::uint32_t{byte_at(p + 6)} << 24;
+    frame.time_100us = wire_number<std::uint32_t>(p + 3);
     return ParseStatus::frame;
 }
 

@@ -2,12 +2,16 @@
 
 #include "telemetry/message_dictionary.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <type_traits>
+
+#include <boost/endian/conversion.hpp>
 
 namespace flightwatt::telemetry {
 
@@ -15,14 +19,17 @@ namespace flightwatt::telemetry {
 template <typename T>
 T wire_number(const char* p) {
     T value;
-    if constexpr (std::endian::native == std::endian::little) {
-        std::memcpy(&value, p, sizeof value);
-    } else {
-        char bytes[sizeof value];
-        for (std::size_t i = 0; i < sizeof value; ++i) bytes[i] = p[sizeof value - 1 - i];
-        std::memcpy(&value, bytes, sizeof value);
-    }
+    std::memcpy(&value, p, sizeof value);
+    boost::endian::little_to_native_inplace(value);
     return value;
+}
+
+/// Returns the little-endian bytes of a number.
+template <typename T>
+std::string wire_bytes(T number) {
+    boost::endian::native_to_little_inplace(number);
+    const auto bytes = std::bit_cast<std::array<char, sizeof number>>(number);
+    return {bytes.begin(), bytes.end()};
 }
 
 /// Returns the decimal number of fewest digits that is read as this float: 11.62 for the float 11.6199999. So a binary

@@ -1,6 +1,10 @@
 #include "telemetry/mavlink/entries.h"
 
+#include "telemetry/binary/wire_value.h"
+
 #include <utility>
+
+#include <boost/endian/conversion.hpp>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -15,9 +19,7 @@ bool is_of_this_century(std::uint64_t time_us) {
 }  // namespace
 
 std::uint64_t tlog_time_us(std::string_view bytes) {
-    std::uint64_t time_us = 0;
-    for (std::size_t i = 0; i < tlog_time_bytes; ++i) time_us = time_us << 8U | static_cast<std::uint8_t>(bytes[i]);
-    return time_us;
+    return boost::endian::endian_reverse(wire_number<std::uint64_t>(bytes.data()));
 }
 
 bool may_be_tlog_entry(std::string_view bytes) {

@@ -61,9 +61,8 @@ std::optional<MavlinkFrame> read_mavlink_frame(std::string_view bytes) {
     frame.checksum = wire_number<std::uint16_t>(payload.data() + payload.size());
     frame.payload = payload;
     if (frame.message == nullptr) return frame;
-    const auto seed = std::string(1, static_cast<char>(frame.message->crc_extra));
-    const auto crc = mavlink_checksum(seed, mavlink_checksum(bytes.substr(1, header - 1 + payload.size())));
-    if (crc != frame.checksum) return std::nullopt;
+    const auto checked = bytes.substr(1, header - 1 + payload.size());
+    if (mavlink_checksum(checked, frame.message->crc_extra) != frame.checksum) return std::nullopt;
     const auto whole = is_v2 ? frame.message->layout.bytes : frame.message->base_bytes;
     frame.payload.resize(std::max(whole, payload.size()), '\0');
     return frame;

@@ -10,6 +10,7 @@
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <boost/algorithm/string/trim.hpp>
+#include <boost/crc.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::telemetry {
@@ -83,11 +84,6 @@ constexpr std::array definitions{
     Definition{291, "ESC_STATUS", "uint64_t time_usec; int32_t[4] rpm; float[4] voltage, current; uint8_t index"},
 };
 
-constexpr std::pair<std::string_view, WireType> wire_types[] = {
-    {"int8_t", WireType::int8},     {"uint8_t", WireType::uint8}, {"int16_t", WireType::int16},
-    {"uint16_t", WireType::uint16}, {"int32_t", WireType::int32}, {"uint32_t", WireType::uint32},
-    {"uint64_t", WireType::uint64}, {"float", WireType::float32}, {"char", WireType::text}};
-
 std::vector<std::string> parts_of(const std::string& text, const char* separators) {
     std::vector<std::string> parts;
     boost::split(parts, text, boost::is_any_of(separators));
@@ -108,7 +104,7 @@ void add_field(MavlinkMessage& message, const std::string& name, WireType type, 
 
 MavlinkMessage message_of(const Definition& definition) {
     MavlinkMessage message{definition.id, {.name = definition.name}};
-    auto crc = mavlink_checksum(message.layout.name + " ");
+    auto described = message.layout.name + " ";
     bool is_extension = false;
     for (auto group : parts_of(definition.fields, ";")) {
         if (group.starts_with('+')) {
@@ -121,28 +117,27 @@ MavlinkMessage message_of(const Definition& definition) {
         const auto type = group.substr(0, std::min(bracket, space));
         std::size_t elements = 0;
         if (bracket != std::string::npos) std::from_chars(&group[bracket + 1], &group[space], elements);
-        const auto wire = std::ranges::find(wire_types, type, &std::pair<std::string_view, WireType>::first)->second;
+        const auto wire = wire_type_of(type).value();
         for (const auto& name : parts_of(group.substr(space), ",")) {
             add_field(message, name, wire, elements);
             if (is_extension) continue;
-            crc = mavlink_checksum(fmt::format("{} {} ", type, name), crc);
-            if (elements > 0) crc = mavlink_checksum(std::string(1, static_cast<char>(elements)), crc);
+            described += fmt::format("{} {} ", type, name);
+            if (elements > 0) described += static_cast<char>(elements);
         }
     }
     if (!is_extension) message.base_bytes = message.layout.bytes;
+    const auto crc = mavlink_checksum(described, std::nullopt);
     message.crc_extra = static_cast<std::uint8_t>((crc & 0xFF) ^ (crc >> 8));
     return message;
 }
 
 }  // namespace
 
-std::uint16_t mavlink_checksum(std::string_view bytes, std::uint16_t crc) {
-    for (const char c : bytes) {
-        auto low = static_cast<std::uint8_t>(static_cast<std::uint8_t>(c) ^ (crc & 0xFF));
-        low = static_cast<std::uint8_t>(low ^ (low << 4));
-        crc = static_cast<std::uint16_t>((crc >> 8) ^ (low << 8) ^ (low << 3) ^ (low >> 4));
-    }
-    return crc;
+std::uint16_t mavlink_checksum(std::string_view bytes, std::optional<std::uint8_t> crc_extra) {
+    boost::crc_optimal<16, 0x1021, 0xFFFF, 0, true, true> crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    if (crc_extra) crc.process_byte(*crc_extra);
+    return crc.checksum();
 }
 
 const std::vector<MavlinkMessage>& mavlink_messages() {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,7 +27,7 @@ const MavlinkMessage* find_mavlink_message(std::uint32_t id);
 /// Returns the message of a name, which must be one of mavlink_messages().
 const MavlinkMessage& mavlink_message(std::string_view name);
 
-/// Returns MAVLink's checksum of bytes, continued from `crc`: CRC-16/MCRF4XX, which begins with 0xFFFF.
-std::uint16_t mavlink_checksum(std::string_view bytes, std::uint16_t crc = 0xFFFF);
+/// Returns MAVLink's checksum of bytes and the seed behind them: CRC-16/MCRF4XX.
+std::uint16_t mavlink_checksum(std::string_view bytes, std::optional<std::uint8_t> crc_extra);
 
 }  // namespace flightwatt::telemetry

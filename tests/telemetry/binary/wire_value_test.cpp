@@ -19,5 +19,11 @@ TEST(WireValue, TakesWhatIsNoNumberAsItIs) {
     EXPECT_TRUE(std::signbit(shortest_decimal(-0.0F)));
 }
 
+TEST(WireValue, IsLittleEndian) {
+    EXPECT_EQ(wire_bytes(std::uint32_t{0x01020304}), "\x04\x03\x02\x01");
+    EXPECT_EQ(wire_number<std::int16_t>("\xFE\xFF"), -2);
+    EXPECT_EQ(wire_number<float>(wire_bytes(11.62F).data()), 11.62F);
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry
