@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -133,12 +134,10 @@ struct Line {
 
 /// The first lines that a table may have: no comments, no blank ones. A line that is cut by the end of the text is one.
 std::vector<Line> first_lines(std::string_view text, char line_end) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = without_byte_order_mark(text);
     std::vector<Line> lines;
     for (std::size_t before = 0; !text.empty() && lines.size() < searched_lines; ++before) {
-        auto line = text.substr(0, text.find(line_end));
-        text.remove_prefix(std::min(text.size(), line.size() + 1));
+        auto line = take_word(text, line_end);
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.find_first_not_of(" \t") != nowhere && line.front() != '#') lines.push_back({before, line});
     }
@@ -283,16 +282,13 @@ DecimalUse decimal_use(const CsvDialect& dialect, std::string_view text, const s
 
 void for_each_csv_row(std::string_view text, const std::string& file, const CsvRowReader& on_row,
                       const CsvDialect& dialect, const CsvRowReader& on_ragged) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets begin with it
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = without_byte_order_mark(text);
     std::size_t line_number = 0;
     std::size_t width = 0;
     CsvRowView row{0, {}};
     LineSplitter splitter(file, row, dialect);
     while (!text.empty()) {
-        const auto end = std::min(text.find(dialect.line_end), text.size());
-        auto line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
+        auto line = take_word(text, dialect.line_end);
         if (++line_number <= dialect.lines_before) continue;
         if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
         if (line.find_first_not_of(" \t") == std::string_view::npos || line.front() == '#') continue;

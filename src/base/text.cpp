@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -96,6 +98,22 @@ std::string toml_key(const std::string& name) {
 
 std::string toml_inline_table(const std::vector<std::string>& pairs) {
     return pairs.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(pairs, ", "));
+}
+
+std::vector<std::string> split(const std::string& text, const char* separators) {
+    std::vector<std::string> parts;
+    boost::algorithm::split(parts, text, boost::algorithm::is_any_of(separators));
+    std::erase(parts, "");
+    return parts;
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return text.substr(text.starts_with(mark) ? mark.size() : 0);
+}
+
+std::size_t line_of_offset(std::string_view text, std::size_t offset) {
+    return 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, offset), '\n'));
 }
 
 std::string one_line(std::string_view text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -39,6 +40,23 @@ std::string toml_key(const std::string& name);
 
 /// "{ a = 1, b = 2 }" of "a = 1" and "b = 2"; "{}" for an empty list.
 std::string toml_inline_table(const std::vector<std::string>& pairs);
+
+/// Removes the next word and the blank that ends it from the front of `rest`, and returns the word. Two blanks enclose
+/// an empty word; a blank at the end starts none.
+inline std::string_view take_word(std::string_view& rest, char separator = ' ') {
+    const auto word = rest.substr(0, rest.find(separator));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    return word;
+}
+
+/// Splits a text at any of the separators, and returns the parts that are not empty.
+std::vector<std::string> split(const std::string& text, const char* separators);
+
+/// Returns the text without the byte order mark that it may begin with, as spreadsheets write it.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// Returns the line of a position in a text, counted from 1.
+std::size_t line_of_offset(std::string_view text, std::size_t offset);
 
 /// `text` with blanks for control characters: diagnostics stay on one line, whatever a file (or its name) put
 /// into them.

@@ -1,6 +1,7 @@
 #include "base/toml_reader.h"
 
 #include "base/atomic_file.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <array>
@@ -113,8 +114,7 @@ void refuse_monsters(std::string_view text, const std::string& file) {
     }
     const auto at = find_deeper_key(text, deepest_nesting);
     if (at == std::string_view::npos) return;
-    const auto line = 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
-    throw InputError({file, line, at - (text.substr(0, at).rfind('\n') + 1) + 1},
+    throw InputError({file, line_of_offset(text, at), at - (text.substr(0, at).rfind('\n') + 1) + 1},
                      fmt::format("keys are nested more than {} levels deep", deepest_nesting));
 }
 

@@ -83,9 +83,7 @@ struct RenamedFile {
 
 /// Without a byte order mark, and with the line ends of Unix.
 std::string normalise_text(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    return boost::algorithm::replace_all_copy(std::string(text), "\r\n", "\n");
+    return boost::algorithm::replace_all_copy(std::string(without_byte_order_mark(text)), "\r\n", "\n");
 }
 
 /// Edits `text` to the content `wanted`, and keeps comments, order and spelling of the rest: removes plan, policy and

@@ -1,5 +1,6 @@
 #include "path/plan_blocks.h"
 
+#include "base/text.h"
 #include "base/toml_reader.h"
 #include "path/plans/block_reader.h"
 #include "path/plans/flight_plan.h"
@@ -116,8 +117,7 @@ std::vector<PlanBlock> flight_plan_blocks(std::string_view text, const std::stri
 }  // namespace
 
 PlanFormat plan_format(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = without_byte_order_mark(text);
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
     if (text.starts_with('<')) return PlanFormat::flight_plan;
     if (text.starts_with('{')) return PlanFormat::qgroundcontrol;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -14,11 +15,6 @@
 
 namespace flightwatt::telemetry {
 namespace {
-
-std::size_t line_of(std::string_view text, std::size_t offset) {
-    const auto* begin = text.data();
-    return 1 + static_cast<std::size_t>(std::count(begin, begin + std::min(offset, text.size()), '\n'));
-}
 
 MessageDefinition read_message(const pugi::xml_node& node) {
     MessageDefinition message{xml_attribute(node, "name"), {}, ".log"};
@@ -90,8 +86,7 @@ constexpr BuiltinLayout builtin_layouts[] = {
 MessageDefinition definition_of(const BuiltinLayout& layout) {
     MessageDefinition definition{layout.message, {}, layout.origin};
     for (auto rest = layout.fields; !rest.empty();) {
-        const auto field = rest.substr(0, rest.find(' '));
-        rest.remove_prefix(std::min(field.size() + 1, rest.size()));
+        const auto field = take_word(rest);
         const auto name = field.substr(0, field.find(':'));
         const auto unit = field.substr(std::min(name.size() + 1, field.size()));
         definition.fields.push_back({std::string(name), "", std::string(unit), "", std::nullopt});
@@ -127,7 +122,7 @@ std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::
     const auto parsed = document.load_buffer(text.data() + begin, end + closing.size() - begin);
     if (!parsed) {
         const auto offset = begin + static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
-        throw InputError({file.string(), line_of(text, offset)},
+        throw InputError({file.string(), line_of_offset(text, offset)},
                          fmt::format("its <protocol> is not XML: {}", parsed.description()));
     }
     std::vector<ProtocolMessage> messages;
@@ -139,7 +134,8 @@ std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::
         for (const auto& message : group.children("message"))
             messages.push_back({class_name, class_id, xml_attribute(message, "id"), read_message(message)});
     }
-    if (messages.empty()) throw InputError({file.string(), line_of(text, begin)}, "its <protocol> defines no message");
+    if (messages.empty())
+        throw InputError({file.string(), line_of_offset(text, begin)}, "its <protocol> defines no message");
     return messages;
 }
 

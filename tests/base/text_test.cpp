@@ -31,5 +31,29 @@ TEST(Utf8, ReplacesAsJsonDoes) {
     }
 }
 
+TEST(Text, IsTakenApart) {
+    std::string_view rest = "a  b ";
+    EXPECT_EQ(take_word(rest), "a");
+    EXPECT_EQ(take_word(rest), "");
+    EXPECT_EQ(take_word(rest), "b");
+    EXPECT_TRUE(rest.empty());
+    EXPECT_EQ(split("a, b,,c", ", "), (std::vector<std::string>{"a", "b", "c"}));
+    EXPECT_TRUE(split("", ",").empty());
+}
+
+TEST(Text, HasLinesFromOne) {
+    EXPECT_EQ(line_of_offset("a\nb", 1), 1U);
+    EXPECT_EQ(line_of_offset("a\nb", 2), 2U);
+    EXPECT_EQ(line_of_offset("a\nb", std::string_view::npos), 2U);
+}
+
+TEST(Text, MayBeginWithAByteOrderMark) {
+    EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF"
+                                      "a"),
+              "a");
+    EXPECT_EQ(without_byte_order_mark("a"), "a");
+    EXPECT_EQ(without_byte_order_mark(""), "");
+}
+
 }  // namespace
 }  // namespace flightwatt

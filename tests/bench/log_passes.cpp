@@ -45,7 +45,7 @@ WordCount count_words(std::string_view text) {
         ++count.lines;
         while (!rest.empty()) {
             ++count.words;
-            count.characters += telemetry::take_word(rest).size();
+            count.characters += take_word(rest).size();
         }
     });
     return count;
@@ -56,7 +56,7 @@ NumberCount count_numbers(std::string_view text) {
     telemetry::for_each_line(text, [&](std::string_view rest) {
         ++count.lines;
         for (int i = 0; !rest.empty(); ++i) {
-            const auto word = telemetry::take_word(rest);
+            const auto word = take_word(rest);
             if (i == 1 || i == 2) continue;  // the sender and the message's name
             const double number = number_or_nan(word);
             if (std::isnan(number)) {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,14 +26,6 @@ std::optional<Number> whole_number(std::string_view text) {
     const auto number = parse_unsigned(boost::algorithm::trim_copy(std::string(text)));
     if (!number || *number > static_cast<std::uint64_t>(std::numeric_limits<Number>::max())) return std::nullopt;
     return static_cast<Number>(*number);
-}
-
-/// Removes the text before the next `mark`, and the mark; returns the text.
-std::string_view take_until(std::string_view& text, char mark) {
-    const auto end = std::min(text.find(mark), text.size());
-    const auto taken = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    return taken;
 }
 
 constexpr std::string_view replay_prefix = "replay";
@@ -71,10 +64,10 @@ std::string to_datagram(const IvyAnnouncement& announcement) {
 
 std::optional<IvyAnnouncement> parse_announcement(std::string_view datagram) {
     auto rest = datagram.substr(0, datagram.find_first_of("\r\n"));
-    const auto version = whole_number<int>(take_until(rest, ' '));
-    const auto port = whole_number<std::uint16_t>(take_until(rest, ' '));
+    const auto version = whole_number<int>(take_word(rest, ' '));
+    const auto port = whole_number<std::uint16_t>(take_word(rest, ' '));
     if (version != ivy_version || !port || *port == 0) return std::nullopt;
-    const auto id = take_until(rest, ' ');
+    const auto id = take_word(rest, ' ');
     return IvyAnnouncement{*port, std::string(id), std::string(rest)};
 }
 
@@ -82,7 +75,7 @@ std::optional<IvyLine> parse_ivy_line(std::string_view line) {
     const auto begin = line.find(arguments_begin);
     if (begin == std::string_view::npos) return std::nullopt;
     auto head = line.substr(0, begin);
-    const auto type = whole_number<int>(take_until(head, ' '));
+    const auto type = whole_number<int>(take_word(head, ' '));
     const auto id = whole_number<int>(head);
     if (!type || !id) return std::nullopt;
     return IvyLine{*type, *id, line.substr(begin + 1)};
@@ -96,7 +89,7 @@ std::string to_ivy_line(IvyType type, int id, std::string_view arguments) {
 
 std::vector<std::string_view> split_groups(std::string_view arguments) {
     std::vector<std::string_view> groups;
-    while (!arguments.empty()) groups.push_back(take_until(arguments, group_end));
+    while (!arguments.empty()) groups.push_back(take_word(arguments, group_end));
     return groups;
 }
 

@@ -1,5 +1,6 @@
 #include "live/state/telemetry_store.h"
 
+#include "base/text.h"
 #include "flight/telemetry_series.h"
 
 #include <algorithm>
@@ -86,8 +87,7 @@ void TelemetryStore::add_mavlink(double time_s, const std::string& sender, std::
 }
 
 void TelemetryStore::add(double time_s, std::string_view message, std::span<const double> values) {
-    const auto sender = message.substr(0, message.find(' '));
-    message.remove_prefix(std::min(sender.size() + 1, message.size()));
+    const auto sender = take_word(message);
     if (!mavlink_.empty()) {
         if (!only_ || sender == *only_) add_mavlink(time_s, std::string(sender), message, values);
         return;

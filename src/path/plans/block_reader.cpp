@@ -1,5 +1,6 @@
 #include "path/plans/block_reader.h"
 
+#include "base/text.h"
 #include "base/toml_reader.h"
 #include "path/plans/patterns.h"
 #include "path/plans/plan_expressions.h"

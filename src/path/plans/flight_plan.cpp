@@ -1,6 +1,7 @@
 #include "path/plans/flight_plan.h"
 
 #include "base/number.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
 #include "path/plans/plan_expressions.h"
 

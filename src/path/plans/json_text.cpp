@@ -1,18 +1,14 @@
 #include "path/plans/json_text.h"
 
 #include "base/error.h"
-
-#include <algorithm>
+#include "base/text.h"
 
 #include <fmt/format.h>
 
 namespace flightwatt::path {
 
 Json parse_json(std::string_view text, const std::string& file, const std::string& hint) {
-    const auto location_at = [&](std::size_t offset) {
-        const auto until = text.substr(0, std::min(offset, text.size()));
-        return Location{file, 1 + static_cast<std::size_t>(std::ranges::count(until, '\n'))};
-    };
+    const auto location_at = [&](std::size_t offset) { return Location{file, line_of_offset(text, offset)}; };
     try {
         return Json::parse(text);
     } catch (const Json::parse_error& error) {

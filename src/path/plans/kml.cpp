@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/text.h"
-#include "path/plans/plan_expressions.h"
 
 #include <cmath>
 #include <optional>

@@ -1,6 +1,7 @@
 #include "path/plans/mission_files.h"
 
 #include "base/number.h"
+#include "base/text.h"
 #include "base/toml_reader.h"
 #include "path/plans/fence.h"
 #include "path/plans/json_text.h"
@@ -551,11 +552,9 @@ PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const
 }
 
 PlanEntries parse_wpl(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
-    std::istringstream lines{std::string(text)};
+    std::istringstream lines{std::string(without_byte_order_mark(text))};
     std::string line;
     std::getline(lines, line);
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     constexpr std::string_view version = "QGC WPL 110";
     const bool is_without_home = line.starts_with("QGC WPL 120");
     if (!line.starts_with(version) && !is_without_home)

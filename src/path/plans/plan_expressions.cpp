@@ -1,15 +1,14 @@
 #include "path/plans/plan_expressions.h"
 
 #include "base/number.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
 
-#include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/replace.hpp>
-#include <boost/algorithm/string/split.hpp>
 
 namespace flightwatt::path {
 namespace {
@@ -90,13 +89,6 @@ std::string without_blanks(std::string text) {
 std::optional<double> evaluate(std::string_view expression, const NamedValues& value_of) {
     const auto text = without_blanks(std::string(expression));
     return Expression(text, value_of).value();
-}
-
-std::vector<std::string> split(const std::string& text, const char* separators) {
-    std::vector<std::string> parts;
-    boost::algorithm::split(parts, text, boost::algorithm::is_any_of(separators));
-    std::erase(parts, "");
-    return parts;
 }
 
 std::pair<std::string, std::vector<std::string>> function_call(const std::string& text) {

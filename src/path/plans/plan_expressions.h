@@ -25,7 +25,4 @@ std::pair<std::string, std::vector<std::string>> function_call(const std::string
 /// "stage_time>10"; std::nullopt for other conditions.
 std::optional<double> find_limit(const std::string& condition, std::initializer_list<std::string_view> names);
 
-/// Splits a text at any of the separators, and returns the parts that are not empty.
-std::vector<std::string> split(const std::string& text, const char* separators);
-
 }  // namespace flightwatt::path

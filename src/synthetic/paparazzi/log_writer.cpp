@@ -1,5 +1,6 @@
 #include "synthetic/paparazzi/log_writer.h"
 
+#include "base/text.h"
 #include "base/units.h"
 
 #include <algorithm>
@@ -170,20 +171,13 @@ constexpr MessageRow message_rows[] = {
     {7.1, "LOGGER_STATUS", "status:uint8 errno:uint8 used:uint32 logfile:char[]", "1 0 logged_bytes log_file"},
 };
 
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::istringstream rest(text);
-    for (std::string part; std::getline(rest, part, separator);) parts.push_back(part);
-    return parts;
-}
-
 PeriodicMessage report_of(const MessageRow& row) {
     telemetry::MessageDefinition definition{row.name, {}, ".log"};
-    for (const auto& field : split(row.fields, ' ')) {
-        const auto parts = split(field, ':');
+    for (const auto& field : split(row.fields, " ")) {
+        const auto parts = split(field, ":");
         definition.fields.push_back({parts[0], parts[1], parts.size() > 2 ? parts[2] : "", "", {}});
     }
-    const auto fields = [words = split(row.values, ' ')](const SensorReadings& moment) {
+    const auto fields = [words = split(row.values, " ")](const SensorReadings& moment) {
         std::vector<std::string> values(words.size());
         std::ranges::transform(words, values.begin(), [&](const std::string& word) {
             const auto* named = std::ranges::find(named_values, word, &NamedValue::name);
