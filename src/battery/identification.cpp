@@ -367,8 +367,7 @@ LeaveOneOutCheck checked(const IdentificationResult& common, const DischargeReco
     battery.thevenin->rc_resistance_ohm *= own.value;
     const auto modelled = modelled_now();
     const auto after = [&](double since_s) {
-        const auto at = std::ranges::lower_bound(record.time_s, record.time_s[record.rest_samples] + since_s);
-        return static_cast<std::size_t>(at - record.time_s.begin());
+        return flight::first_at_or_after(record.time_s, record.time_s[record.rest_samples] + since_s);
     };
     check.voltage_rms_v =
         root_mean_square(errors_v(modelled.voltage_v, record, 0, identified.fit.common_rest_offset_v));

@@ -35,6 +35,14 @@ double median_interval_s(const std::vector<double>& time_s) {
     return intervals.empty() ? 0.0 : median_high(std::move(intervals));
 }
 
+std::size_t first_at_or_after(const std::vector<double>& time_s, double from_s) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(time_s, from_s) - time_s.begin());
+}
+
+std::size_t first_after(const std::vector<double>& time_s, double until_s) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(time_s, until_s) - time_s.begin());
+}
+
 double gap_threshold_s(const std::vector<double>& time_s) {
     constexpr double max_s = 10.0;
     return std::min(3.0 * median_interval_s(time_s), max_s);
@@ -44,8 +52,7 @@ double integrated(const std::vector<double>& time_s, const std::vector<double>& 
     double integral = 0.0;
     double last_s = start_s;
     double last = interpolate_clamped(time_s, values, start_s);
-    for (auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, start_s) - time_s.begin());
-         i < time_s.size() && time_s[i] < end_s; ++i) {
+    for (auto i = first_at_or_after(time_s, start_s); i < time_s.size() && time_s[i] < end_s; ++i) {
         integral += 0.5 * (last + values[i]) * (time_s[i] - last_s);
         last_s = time_s[i];
         last = values[i];
@@ -79,14 +86,12 @@ Track make_track(const std::vector<double>& time_s, const std::vector<double>& v
 }
 
 double value_at(const Track& track, double time_s) {
-    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
-    return interpolate(track, static_cast<std::size_t>(after - track.time_s.begin()), time_s);
+    return interpolate(track, first_after(track.time_s, time_s), time_s);
 }
 
 double state_at(const Track& track, double time_s) {
-    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), time_s);
-    const auto index = static_cast<std::size_t>(after - track.time_s.begin());
-    return track.value[index == 0 ? 0 : index - 1];
+    const auto after = first_after(track.time_s, time_s);
+    return track.value[after == 0 ? 0 : after - 1];
 }
 
 std::vector<double> resample(const Track& track, const std::vector<double>& time_s) {
@@ -125,9 +130,8 @@ void replace_track(FlightSeries& series, Track track) {
 FlightSeries truncate_series(FlightSeries series, double until_s) {
     std::erase_if(series.tracks, [&](const Track& track) { return track.since_s > until_s; });
     for (auto& track : series.tracks) {
-        const auto kept = std::ranges::upper_bound(track.time_s, until_s) - track.time_s.begin();
-        track.time_s.resize(static_cast<std::size_t>(kept));
-        track.value.resize(static_cast<std::size_t>(kept));
+        track.time_s.resize(first_after(track.time_s, until_s));
+        track.value.resize(track.time_s.size());
     }
     std::erase_if(series.assumed_definitions, [&](const auto& definition) { return definition.since_s > until_s; });
     truncate_skipped(series.skipped, until_s);

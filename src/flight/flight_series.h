@@ -69,6 +69,12 @@ double gap_threshold_s(const std::vector<double>& time_s);
 /// Returns the median interval of samples [s].
 double median_interval_s(const std::vector<double>& time_s);
 
+/// Returns the index of the first of rising times that is not before `from_s`; their number without one.
+std::size_t first_at_or_after(const std::vector<double>& time_s, double from_s);
+
+/// Returns the index of the first of rising times that is after `until_s`; their number without one.
+std::size_t first_after(const std::vector<double>& time_s, double until_s);
+
 /// Returns whether all values are equal; true for an empty track.
 bool is_constant(const Track& track);
 

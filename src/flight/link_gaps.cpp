@@ -78,10 +78,8 @@ bool restarts(const Track& counter, double from_s, double to_s) {
     constexpr double low_fraction = 0.1;
     const auto& time_s = counter.time_s;
     const auto& value = counter.value;
-    const auto index_of = [&](auto bound) { return static_cast<std::size_t>(bound - time_s.begin()); };
-    const auto first = index_of(std::ranges::lower_bound(time_s, from_s));
-    const auto end = index_of(std::ranges::upper_bound(time_s, to_s));
-    for (auto i = first + 1; i + 1 < end; ++i) {
+    const auto end = first_after(time_s, to_s);
+    for (auto i = first_at_or_after(time_s, from_s) + 1; i + 1 < end; ++i) {
         const double low = low_fraction * value[i - 1];
         if (value[i] < low && value[i + 1] < low && value[end - 1] > value[i]) return true;
     }

@@ -9,10 +9,6 @@
 namespace flightwatt::flight {
 namespace {
 
-std::size_t first_at_or_after(const std::vector<double>& time_s, double t) {
-    return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
-}
-
 /// The samples before intervals in which bytes of the log are damaged and a sample is lost.
 std::vector<std::size_t> samples_before_damage(const FlightData& data, const std::vector<double>& time_s) {
     constexpr double lost_intervals = 1.5;

@@ -31,8 +31,7 @@ std::vector<VtolSpan> vtol_spans(const FlightData& data, double start_s, double 
     std::vector<VtolSpan> spans;
     if (state.empty() || !(start_s < end_s)) return spans;
     spans.push_back({{start_s, end_s}, flight_of(state_at(state, start_s))});
-    const auto first = std::ranges::upper_bound(state.time_s, start_s) - state.time_s.begin();
-    for (auto i = static_cast<std::size_t>(first); i < state.time_s.size() && state.time_s[i] < end_s; ++i) {
+    for (auto i = first_after(state.time_s, start_s); i < state.time_s.size() && state.time_s[i] < end_s; ++i) {
         const double time_s = state.time_s[i];
         const auto flight = flight_of(state.value[i]);
         if (flight == spans.back().flight) continue;

@@ -20,10 +20,8 @@ constexpr double max_bank_deg = 60.0;
 
 /// The track's values in [start_s, end_s].
 std::span<const double> values_between(const flight::Track& track, double start_s, double end_s) {
-    const auto first = std::ranges::lower_bound(track.time_s, start_s);
-    const auto last = std::upper_bound(first, track.time_s.end(), end_s);
-    return std::span(track.value)
-        .subspan(static_cast<std::size_t>(first - track.time_s.begin()), static_cast<std::size_t>(last - first));
+    const auto first = flight::first_at_or_after(track.time_s, start_s);
+    return std::span(track.value).subspan(first, flight::first_after(track.time_s, end_s) - first);
 }
 
 /// Whether half of the time or more has a sample near it, and there is one inside.

@@ -35,12 +35,11 @@ std::optional<double> held_height_m(const flight::PhaseSpan& span, const flight:
 
 PhaseSamples samples_of(const flight::Track& power, const flight::PhaseSpan& span, const std::string& flight) {
     PhaseSamples samples{flight, span.duration_s(), {}, {}, span.start.time_s};
-    const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - power.time_s.begin();
-    const auto last = std::ranges::upper_bound(power.time_s, span.end.time_s) - power.time_s.begin();
+    const auto first = flight::first_at_or_after(power.time_s, span.start.time_s);
+    const auto last = flight::first_after(power.time_s, span.end.time_s);
     const auto edges = span.complete ? count_neighbour_samples(power, span) : EdgeSamples{};
     samples.edge_samples = edges.at_start + edges.at_end;
-    for (auto i = static_cast<std::size_t>(first) + edges.at_start; i + edges.at_end < static_cast<std::size_t>(last);
-         ++i) {
+    for (auto i = first + edges.at_start; i + edges.at_end < last; ++i) {
         const double time_s = power.time_s[i];
         // The duration is rounded to the millisecond: a sample at the very end may be 1 + 2e-16 of it.
         samples.tau.push_back(std::min(1.0, (time_s - span.start.time_s) / samples.duration_s));
@@ -67,8 +66,8 @@ PhasePower power_over(const flight::Track& power, const flight::PhaseSpan& span,
         measured.power_w.push_back(power_w);
     };
     add(0.0, interpolate_clamped(power.time_s, power.value, start_s));
-    auto i = static_cast<std::size_t>(std::ranges::upper_bound(power.time_s, start_s) - power.time_s.begin());
-    for (; i < power.time_s.size() && power.time_s[i] < span.end.time_s; ++i)
+    for (auto i = flight::first_after(power.time_s, start_s);
+         i < power.time_s.size() && power.time_s[i] < span.end.time_s; ++i)
         add(power.time_s[i] - start_s, power.value[i]);
     add(span.duration_s(), interpolate_clamped(power.time_s, power.value, span.end.time_s));
     return measured;

@@ -81,9 +81,8 @@ double median_gap(const std::vector<double>& tau) {
 }
 
 EdgeSamples count_neighbour_samples(const flight::Track& power, const flight::PhaseSpan& span) {
-    const auto begin = power.time_s.begin();
-    const auto first = std::ranges::lower_bound(power.time_s, span.start.time_s) - begin;
-    const auto last = std::ranges::upper_bound(power.time_s, span.end.time_s) - begin;
+    const auto first = static_cast<std::ptrdiff_t>(flight::first_at_or_after(power.time_s, span.start.time_s));
+    const auto last = static_cast<std::ptrdiff_t>(flight::first_after(power.time_s, span.end.time_s));
     if (last <= first) return {};
     return {count_at(power, span.start, first, last, 1), count_at(power, span.end, first, last, -1)};
 }

@@ -152,5 +152,13 @@ TEST(Track, IsLinearBetweenItsPointsAndConstantBeyond) {
     EXPECT_THAT(resample(track, times), ElementsAre(10, 15, 20, 10, 0));
 }
 
+TEST(Track, HasRowsBetweenTimes) {
+    const std::vector<double> times{1, 2, 4};
+    EXPECT_EQ(first_at_or_after(times, 2), 1U);
+    EXPECT_EQ(first_after(times, 2), 2U);
+    EXPECT_EQ(first_at_or_after(times, 5), 3U);
+    EXPECT_EQ(first_after(times, 0), 0U);
+}
+
 }  // namespace
 }  // namespace flightwatt::flight

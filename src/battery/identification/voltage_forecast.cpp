@@ -203,9 +203,8 @@ std::optional<ForecastErrors> forecast_errors(const ModelledRecord& modelled, co
     if (end <= first || record.time_s[end - 1] - record.time_s[first] < 2.0 * step_between_forecasts_s)
         return std::nullopt;
     FlownCorrection flown(modelled);
-    const auto started =
-        std::ranges::lower_bound(record.time_s, record.time_s[first] + start_s) - record.time_s.begin();
-    ForecastErrors errors{forecast_error_v(modelled, flown, static_cast<std::size_t>(started), course_w, 1.0)};
+    const auto started = flight::first_at_or_after(record.time_s, record.time_s[first] + start_s);
+    ForecastErrors errors{forecast_error_v(modelled, flown, started, course_w, 1.0)};
     double forecasts = 0.0;
     double flown_j = course_w.back() * step_between_forecasts_s;
     double others_j = flown_j;

@@ -167,10 +167,7 @@ PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases
     record.sorties = phases.sorties;
     const auto& time_s = record.time_s;
     for (const auto& sortie : phases.sorties) {
-        const auto first = std::lower_bound(time_s.begin(), time_s.end(), sortie.start_s());
-        const auto last = std::upper_bound(first, time_s.end(), sortie.end_s());
-        record.in_flight.push_back(
-            {static_cast<std::size_t>(first - time_s.begin()), static_cast<std::size_t>(last - time_s.begin())});
+        record.in_flight.push_back({first_at_or_after(time_s, sortie.start_s()), first_after(time_s, sortie.end_s())});
         if (!time_s.empty()) record.energy_j += integrated(time_s, record.power_w, sortie.start_s(), sortie.end_s());
         record.duration_s += sortie.end_s() - sortie.start_s();
     }

@@ -32,7 +32,7 @@ std::optional<AroundPause> around_pause(const FlightSeries& series, std::string_
                                         std::size_t samples) {
     const auto found = std::ranges::find(series.tracks, name, &Track::name);
     if (found == series.tracks.end()) return std::nullopt;
-    const auto end = static_cast<std::size_t>(std::ranges::lower_bound(found->time_s, end_s) - found->time_s.begin());
+    const auto end = first_at_or_after(found->time_s, end_s);
     const auto all = std::span(found->value);
     const auto before = all.first(end).last(std::min(samples, end));
     const auto after = all.subspan(end, std::min(samples, all.size() - end));

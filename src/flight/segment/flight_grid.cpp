@@ -23,11 +23,8 @@ void add_altitude(ResampledFlight& grid, const CleanedAltitude& record, const st
     std::size_t sample = 0;
     for (std::size_t p = 0; p <= record.jumps_s.size(); ++p) {
         const bool last = p == record.jumps_s.size();
-        const auto index_at = [](const std::vector<double>& times, double t) {
-            return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
-        };
-        const auto end = last ? time_s.size() : index_at(time_s, record.jumps_s[p]);
-        const auto next_sample = last ? track.time_s.size() : index_at(track.time_s, record.jumps_s[p]);
+        const auto end = last ? time_s.size() : first_at_or_after(time_s, record.jumps_s[p]);
+        const auto next_sample = last ? track.time_s.size() : first_at_or_after(track.time_s, record.jumps_s[p]);
         if (end > begin && next_sample > sample) {
             const auto copy = [](const std::vector<double>& all, IndexSpan span) {
                 const auto part = part_of(all, span);
@@ -123,7 +120,7 @@ void keep_jumps_in_flight(ResampledFlight& grid, const Track& motor_percent, Cle
     const auto& altitude_m = record.altitude.value;
     const auto runs_at = [&](double t) { return value_at(motor_percent, t) > idle_motor_percent(grid, {}); };
     std::erase_if(record.jumps_s, [&](double t) {
-        const auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, t) - time_s.begin());
+        const auto i = first_at_or_after(time_s, t);
         if (!runs_at(time_s[i - 1]) || !runs_at(t)) return false;
         grid.jumps_in_flight.time_s.push_back(t);
         grid.jumps_in_flight.value.push_back(std::abs(altitude_m[i] - altitude_m[i - 1]));

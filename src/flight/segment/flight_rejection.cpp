@@ -75,9 +75,9 @@ std::vector<double> altitudes_within(const Track& track, const ResampledFlight& 
     const double end_s = grid.time_s(span.end - 1);
     const auto bounds = physical_bounds("altitude_m").value();
     std::vector<double> values;
-    const auto first = std::ranges::lower_bound(track.time_s, grid.time_s(span.begin)) - track.time_s.begin();
-    values.reserve(track.time_s.size() - static_cast<std::size_t>(first));
-    for (auto i = static_cast<std::size_t>(first); i < track.time_s.size() && track.time_s[i] <= end_s; ++i) {
+    const auto first = first_at_or_after(track.time_s, grid.time_s(span.begin));
+    values.reserve(track.time_s.size() - first);
+    for (auto i = first; i < track.time_s.size() && track.time_s[i] <= end_s; ++i) {
         if (track.value[i] >= bounds.low && track.value[i] <= bounds.high) values.push_back(track.value[i]);
     }
     return values;

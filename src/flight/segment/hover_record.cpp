@@ -89,8 +89,7 @@ bool has_pause(const ResampledFlight& grid, IndexSpan within, double pause_s) {
 }  // namespace
 
 bool changes_to(const Track& state, double value, double from_s, double to_s) {
-    for (auto i = static_cast<std::size_t>(std::ranges::upper_bound(state.time_s, from_s) - state.time_s.begin());
-         i < state.time_s.size() && state.time_s[i] <= to_s; ++i)
+    for (auto i = first_after(state.time_s, from_s); i < state.time_s.size() && state.time_s[i] <= to_s; ++i)
         if (state.value[i] == value) return true;
     return false;
 }

@@ -51,8 +51,7 @@ using Velocities = std::vector<GroundVelocity>;
 
 /// The course at a time [rad], between two near it or from one just before; NaN without.
 double course_at(const Track& course, double time_s) {
-    const auto after = std::upper_bound(course.time_s.begin(), course.time_s.end(), time_s);
-    const auto i = static_cast<std::size_t>(after - course.time_s.begin());
+    const auto i = first_after(course.time_s, time_s);
     if (i == 0) return std::nan("");
     const double since_s = time_s - course.time_s[i - 1];
     double course_deg = course.value[i - 1];

@@ -67,10 +67,6 @@ void follow_commands(const Track& commands, ChosenTrack& throttle) {
                     throttle.source, commanded_throttle, replaced->together_s, replaced->first_s));
 }
 
-std::size_t first_after(const std::vector<double>& times_s, double time_s) {
-    return static_cast<std::size_t>(std::ranges::upper_bound(times_s, time_s) - times_s.begin());
-}
-
 }  // namespace
 
 ChosenTrack select_throttle(const FlightSeries& series, const Track& power_w) {
@@ -105,8 +101,8 @@ std::optional<ReplacedThrottle> replace_idle_throttle(Track& throttle, double id
     const double gap_s = gap_threshold_s(clock_s);
     std::optional<ReplacedThrottle> replaced;
     for (const auto& run : runs_of({0, throttle.time_s.size()}, idles)) {
-        const auto first = std::ranges::lower_bound(clock_s, throttle.time_s[run.begin]) - clock_s.begin();
-        const IndexSpan within{static_cast<std::size_t>(first), first_after(clock_s, throttle.time_s[run.end - 1])};
+        const IndexSpan within{first_at_or_after(clock_s, throttle.time_s[run.begin]),
+                               first_after(clock_s, throttle.time_s[run.end - 1])};
         const double running_s = time_where(clock_s, within, gap_s, runs);
         if (running_s < contradicted_s) continue;
         std::vector<double> running_percent;

@@ -87,10 +87,9 @@ InitialCharge initial_of(const PredictionInput& input, const std::optional<Initi
 
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
                              double initial_soc_percent, double time_s) {
-    const auto after = std::ranges::upper_bound(record.time_s, time_s);
-    if (after == record.time_s.begin()) return std::nullopt;
-    const auto index = static_cast<std::size_t>(after - record.time_s.begin()) - 1;
-    return initial_soc_percent - units::percentage(record.charge_ah[index], battery.capacity_ah);
+    const auto after = flight::first_after(record.time_s, time_s);
+    if (after == 0) return std::nullopt;
+    return initial_soc_percent - units::percentage(record.charge_ah[after - 1], battery.capacity_ah);
 }
 
 LiveBattery estimate_soc(const PredictionInput& input, const std::optional<InitialCharge>& carried,

@@ -94,7 +94,7 @@ Json lines_of(const ReportFlight& flight, const Positions& positions) {
     const double gap_s = flight::gap_threshold_s(time_s);
     for (const auto& sortie : flight.phases.sorties) {
         for (const auto& span : sortie.phases) {
-            auto i = static_cast<std::size_t>(std::ranges::lower_bound(time_s, span.start.time_s) - time_s.begin());
+            auto i = flight::first_at_or_after(time_s, span.start.time_s);
             while (i < time_s.size() && time_s[i] <= span.end.time_s) {
                 const auto first = i++;
                 while (i < time_s.size() && time_s[i] <= span.end.time_s && time_s[i] - time_s[i - 1] <= gap_s) ++i;
