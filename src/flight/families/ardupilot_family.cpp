@@ -10,6 +10,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -74,15 +75,8 @@ std::vector<FamilyTrack> electrical_tracks() {
          {std::pair<const char*, const char*>{"BAT", nullptr}, {"CURR", nullptr}, {"BAT2", "1"}, {"CUR2", "1"}})
         add_monitor(message, device, tracks);
     add_esc("ESC", nullptr, tracks);
-    for (const auto& [message, device] : {std::pair<const char*, const char*>{"ESC1", "1"},
-                                          {"ESC2", "2"},
-                                          {"ESC3", "3"},
-                                          {"ESC4", "4"},
-                                          {"ESC5", "5"},
-                                          {"ESC6", "6"},
-                                          {"ESC7", "7"},
-                                          {"ESC8", "8"}})
-        add_esc(message, device, tracks);
+    for (const char* message : {"ESC1", "ESC2", "ESC3", "ESC4", "ESC5", "ESC6", "ESC7", "ESC8"})
+        add_esc(message, message + std::string_view("ESC").size(), tracks);
     return tracks;
 }
 
