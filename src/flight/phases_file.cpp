@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -68,31 +70,14 @@ std::optional<double> hovering_s(const FlightData& data, const PhaseSpan& span) 
 }  // namespace
 
 std::string phases_csv(const FlightData& data, const FlightPhases& phases) {
-    CsvWriter csv({"sortie",
-                   "phase",
-                   "start_s",
-                   "end_s",
-                   "duration_s",
-                   "samples",
-                   "mean_power_w",
-                   "energy_wh",
-                   "counter_energy_wh",
-                   "gaps",
-                   "longest_gap_s",
-                   "complete",
-                   "start_altitude_m",
-                   "start_gap_s",
-                   "start_throttle_percent",
-                   "start_mode",
-                   "start_block",
-                   "start_to_takeoff_message_s",
-                   "end_altitude_m",
-                   "end_gap_s",
-                   "end_throttle_percent",
-                   "end_mode",
-                   "end_block",
-                   "end_to_takeoff_message_s",
-                   "hovering_s"});
+    std::vector<std::string> columns{
+        "sortie",       "phase",     "start_s",           "end_s", "duration_s",    "samples",
+        "mean_power_w", "energy_wh", "counter_energy_wh", "gaps",  "longest_gap_s", "complete"};
+    for (const std::string side : {"start_", "end_"})
+        for (const auto* name : {"altitude_m", "gap_s", "throttle_percent", "mode", "block", "to_takeoff_message_s"})
+            columns.push_back(side + name);
+    columns.emplace_back("hovering_s");
+    CsvWriter csv({columns.begin(), columns.end()});
     const auto altitude = [](const PhaseEdge& edge) { return fmt::format("{:.2f}", edge.altitude_m); };
     const PowerStatistics power(data);
     for (const auto& sortie : phases.sorties) {
