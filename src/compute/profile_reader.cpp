@@ -52,6 +52,7 @@ struct ProfileColumns {
     std::vector<std::size_t> parameter_columns;
     std::size_t power = 0;
     std::optional<std::size_t> standard_error = {};
+    std::optional<std::size_t> total = {};  ///< of the whole computer
 };
 
 PowerProfile profile_of(const CsvTable& table, std::size_t first_row, const ProfileColumns& columns) {
@@ -65,7 +66,12 @@ PowerProfile profile_of(const CsvTable& table, std::size_t first_row, const Prof
             node.standard_error_w = cell_number(table, row, *columns.standard_error);
         nodes.push_back(std::move(node));
     }
-    return make_power_profile(table.file, columns.parameters, std::move(nodes));
+    auto profile = make_power_profile(table.file, columns.parameters, std::move(nodes));
+    if (columns.total) {
+        const auto& row = table.rows[first_row];
+        profile.excluded_idle_w = cell_number(table, row, *columns.total) - cell_number(table, row, columns.power);
+    }
+    return profile;
 }
 
 /// By the names of a header: parameters, power_w and then evidence.
@@ -81,6 +87,7 @@ ProfileColumns columns_of_header(const CsvTable& table) {
     columns.power = static_cast<std::size_t>(power - header.cells.begin());
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
         const auto& [name, column] = header.cells[i];
+        if (name == total_column) columns.total = i;
         if (i < columns.power) {
             columns.parameters.push_back(name);
             columns.parameter_columns.push_back(i);
@@ -183,19 +190,6 @@ PowerProfile read_power_profile(const std::filesystem::path& path, const Profile
     }
     for (const auto& cell : cells) table.columns.push_back(cell.text);
     return profile_of(table, 1, columns_of_header(table));
-}
-
-double excluded_idle_w(const std::filesystem::path& path) {
-    if (path.extension() == ".cfg") return 0.0;
-    const auto table = read_csv(path, CsvHeader::absent);
-    const auto& names = table.rows.front().cells;
-    const auto power = std::ranges::find(names, power_column, &CsvTable::Cell::text) - names.begin();
-    const auto total = std::ranges::find(names, total_column, &CsvTable::Cell::text) - names.begin();
-    if (std::max(power, total) == std::ssize(names) || table.rows.size() < 2) return 0.0;
-    const auto of_first = [&](auto column) {
-        return cell_number(table, table.rows[1], static_cast<std::size_t>(column));
-    };
-    return of_first(total) - of_first(power);
 }
 
 }  // namespace flightwatt::compute

@@ -20,15 +20,12 @@ struct ProfileNaming {
 
 /// Reads a profile in any of the formats:
 ///   - CSV of `flightwatt profile`: a header of the parameters, power_w and further columns, of which standard_error_w
-///     is read; '#' begins a comment line
+///     and total_power_w (less power_w: the idle computer) are read; '#' begins a comment line
 ///   - powprofiler layer 2: a header of flags (powprofiler.h), names from `naming.parameters`
 ///   - a CSV without header (powprofiler's and gnuplot's), names from `naming.columns`
 ///   - powprofiler layer 1, the recording of one configuration: constant power, its mean
 ///   - powprofiler .cfg with [combinations]: each node is the mean of a layer 1 file
 /// Throws InputError for another format, names that do not fit, and as make_power_profile.
 PowerProfile read_power_profile(const std::filesystem::path& path, const ProfileNaming& naming = {});
-
-/// Power [W] of the idle computer that a profile of `flightwatt profile` excludes (above_idle); 0 of other profiles.
-double excluded_idle_w(const std::filesystem::path& path);
 
 }  // namespace flightwatt::compute

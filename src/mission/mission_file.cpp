@@ -195,7 +195,6 @@ void read_components(const TomlTable& root, MissionSetup& mission) {
     for (const auto& name : components->keys()) {
         const auto table = components->table(name);
         auto& component = mission.compute.components.emplace_back(read_component(table, name));
-        component.profile.excluded_idle_w = compute::excluded_idle_w(named_file(table, "profile"));
         if (!mission.may_charge)
             if (auto text = remove_negative_power(component.profile); !text.empty())
                 mission.notes.push_back(std::move(text));

@@ -168,14 +168,13 @@ TEST(ProfileReader, ReadsTheRealTrackingProfileInAllItsForms) {
 }
 
 TEST(ExcludedIdle, IsTheTotalLessThePower) {
-    const auto excluded_w = [folder = test::scratch_dir()](const char* text) {
-        test::write_text(folder / "p.csv", text);
-        return excluded_idle_w(folder / "p.csv");
+    const auto excluded_w = [folder = test::scratch_dir()](const char* text, const ProfileNaming& naming = {}) {
+        return read_power_profile(write_text(folder / "p.csv", text), naming).excluded_idle_w;
     };
     EXPECT_DOUBLE_EQ(excluded_w("# above idle\nfps,power_w,total_power_w\n1,2.5,8\n2,3.5,9\n"), 5.5);
     EXPECT_EQ(excluded_w("fps,power_w,total_power_w\n1,8,8\n"), 0.0);
     EXPECT_EQ(excluded_w("fps,power_w\n1,8\n"), 0.0);
-    EXPECT_EQ(excluded_w("200,100\n1,8\n"), 0.0);
+    EXPECT_EQ(excluded_w("200,100\n1,8\n", parameters({"fps"})), 0.0);
 }
 
 }  // namespace
