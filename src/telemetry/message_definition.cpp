@@ -5,11 +5,11 @@
 #include "base/text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <map>
 #include <set>
 
+#include <boost/algorithm/string/case_conv.hpp>
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
@@ -103,11 +103,9 @@ std::map<std::string, std::vector<MessageDefinition>, std::less<>> all_definitio
 }  // namespace
 
 std::string xml_attribute(const pugi::xml_node& node, std::string_view lower) {
-    std::string upper(lower);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    const auto found = node.attribute(std::string(lower).c_str());
-    return found ? found.value() : node.attribute(upper.c_str()).value();
+    const std::string name(lower);
+    if (const auto found = node.attribute(name.c_str())) return found.value();
+    return node.attribute(boost::algorithm::to_upper_copy(name).c_str()).value();
 }
 
 std::vector<ProtocolMessage> parse_protocol(const std::string& text, const std::filesystem::path& file) {

@@ -6,9 +6,9 @@
 #include "path/plans/plan_expressions.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include <boost/algorithm/string/case_conv.hpp>
 #include <fmt/format.h>
 
 namespace flightwatt::path {
@@ -77,10 +77,7 @@ GeodeticPosition origin_of(const FlightPlan& plan) {
 
 std::string attribute(const pugi::xml_node& node, const std::string& name) {
     if (const auto found = node.attribute(name.c_str())) return found.value();
-    auto capitals = name;
-    std::ranges::transform(capitals, capitals.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return node.attribute(capitals.c_str()).value();
+    return node.attribute(boost::algorithm::to_upper_copy(name).c_str()).value();
 }
 
 Location where(const FlightPlan& plan, const pugi::xml_node& node) {
