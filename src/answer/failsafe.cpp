@@ -1,6 +1,7 @@
 #include "answer/failsafe.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/units.h"
 #include "battery/landing_forecast.h"
 #include "mechanical/prediction.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,13 +86,8 @@ double needed_percent(const Draw& draw, bool is_return, double keep_percent) {
     const auto loads = loads_of(draw, is_return);
     if (is_return && draw.loads.is_infeasible) return never;
     if (soc_after(draw, full_percent, loads) < keep_percent) return never;
-    double low = keep_percent;
-    double high = full_percent;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = std::midpoint(low, high);
-        (soc_after(draw, middle, loads) < keep_percent ? low : high) = middle;
-    }
-    return high;
+    return last_true(full_percent, keep_percent, halvings,
+                     [&](double percent) { return soc_after(draw, percent, loads) >= keep_percent; });
 }
 
 /// Draws of a mission, and what all of them share.

@@ -1,6 +1,7 @@
 #include "answer/plan_check.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/units.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -230,11 +230,7 @@ class Remedies {
     template <typename With>
     double greatest(double low, double high, const With& with) const {
         constexpr int halvings = 8;
-        for (int i = 0; i < halvings; ++i) {
-            const double middle = std::midpoint(low, high);
-            (flight_.suffices(with, middle) ? low : high) = middle;
-        }
-        return low;
+        return last_true(low, high, halvings, [&](double value) { return flight_.suffices(with, value); });
     }
 
     void add_part() {

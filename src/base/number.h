@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -60,6 +61,17 @@ inline std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
     const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (status != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
     return value;
+}
+
+/// Returns, by bisection, the last value for which `holds` is true between `from`, where it is, and `to`, where it is not.
+/// Neither of them is tried, and `to` may be the lesser.
+template <typename Predicate>
+double last_true(double from, double to, int halvings, const Predicate& holds) {
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = std::midpoint(from, to);
+        (holds(middle) ? from : to) = middle;
+    }
+    return from;
 }
 
 }  // namespace flightwatt

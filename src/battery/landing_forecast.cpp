@@ -1,13 +1,13 @@
 #include "battery/landing_forecast.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
 #include "battery/discharge.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -23,16 +23,12 @@ double compute_endurance_s(const Battery& battery, const BatteryState& state, do
                            const LandingLimits& limits) {
     if (!(power_w > 0.0) || state.soc_percent <= limits.reserve_soc_percent) return 0.0;
     constexpr int bisections = 40;
-    double low_s = 0.0;
     // The load cannot draw more energy than a full battery holds.
-    double high_s = std::min(max_s, units::joule_from_wh(full_energy_wh(battery)) / power_w);
-    for (int i = 0; i < bisections; ++i) {
-        const double middle_s = std::midpoint(low_s, high_s);
-        const auto end = discharge_constant_load(battery, state, {power_w, middle_s}, limits.cutoff_voltage_v);
-        const bool is_enough = !end.failed_at_s() && end.soc_percent >= limits.reserve_soc_percent;
-        (is_enough ? low_s : high_s) = middle_s;
-    }
-    return low_s;
+    const double high_s = std::min(max_s, units::joule_from_wh(full_energy_wh(battery)) / power_w);
+    return last_true(0.0, high_s, bisections, [&](double duration_s) {
+        const auto end = discharge_constant_load(battery, state, {power_w, duration_s}, limits.cutoff_voltage_v);
+        return !end.failed_at_s() && end.soc_percent >= limits.reserve_soc_percent;
+    });
 }
 
 }  // namespace

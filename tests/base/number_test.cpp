@@ -47,5 +47,21 @@ TEST(ParseNumber, IsCorrectlyRoundedOnBothPaths) {
     }
 }
 
+TEST(LastTrue, ReturnsAValueThatHoldsNearTheFirstThatDoesNot) {
+    const double last = last_true(0.0, 8.0, 20, [](double x) { return x < 3.0; });
+    EXPECT_LT(last, 3.0);
+    EXPECT_NEAR(last, 3.0, 1e-5);
+    EXPECT_EQ(last_true(0.0, 8.0, 2, [](double x) { return x < 3.0; }), 2.0);
+}
+
+TEST(LastTrue, GoesDownAsWellAsUp) {
+    EXPECT_EQ(last_true(8.0, 0.0, 2, [](double x) { return x > 3.0; }), 4.0);
+}
+
+TEST(LastTrue, TriesNeitherOfItsEnds) {
+    EXPECT_EQ(last_true(1.0, 2.0, 0, [](double) { return false; }), 1.0);
+    EXPECT_EQ(last_true(0.0, 1.0, 1, [](double) { return true; }), 0.5);
+}
+
 }  // namespace
 }  // namespace flightwatt

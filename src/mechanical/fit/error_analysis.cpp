@@ -1,5 +1,6 @@
 #include "mechanical/fit/error_analysis.h"
 
+#include "base/number.h"
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "mechanical/fit/fourier_basis.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -88,12 +88,8 @@ std::vector<double> frequencies_to_try(const WeightedFlights& samples, const Pha
     std::vector<double> tried{fit.theta_rad, fit.range.low_rad};
     for (const double end_rad : {std::max(fit.range.low_rad, fit.theta_rad - scan_grid(fit.range, order).step_rad),
                                  std::min(fit.range.high_rad, fit.theta_rad + scan_grid(fit.range, order).step_rad)}) {
-        double inside_rad = fit.theta_rad;
-        double outside_rad = end_rad;
-        for (int i = 0; i < bisections; ++i) {
-            const double middle_rad = std::midpoint(inside_rad, outside_rad);
-            (square_sum(middle_rad) < max_sum ? inside_rad : outside_rad) = middle_rad;
-        }
+        const double inside_rad = last_true(fit.theta_rad, end_rad, bisections,
+                                            [&](double theta_rad) { return square_sum(theta_rad) < max_sum; });
         for (int i = 1; i <= to_each_side; ++i)
             tried.push_back(std::lerp(fit.theta_rad, inside_rad, static_cast<double>(i) / to_each_side));
     }

@@ -1,9 +1,10 @@
 #include "mission/planning/utility_bound.h"
 
+#include "base/number.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace flightwatt::mission {
@@ -69,15 +70,13 @@ void set_lowest_charge(const ScheduleProblem& problem, UtilityBound& bound) {
     const double spare_percent = bound.best_state.back().soc_percent - problem.reserve_soc_percent;
     bound.lowest_percent.assign(bound.best_state.size(), problem.reserve_soc_percent);
     for (std::size_t i = problem.dynamics.slots.size(); i-- > 0;) {
-        const auto [best_percent, rc_v] = bound.best_state[i];
-        double too_low = best_percent - spare_percent;  // two charges never approach each other
-        double enough = best_percent;
-        for (int halving = 0; halving < halvings; ++halving) {
-            const double middle = std::midpoint(too_low, enough);
-            const auto after = advance_slot(problem.dynamics, i, range_of(problem, i).least, {middle, rc_v});
-            (after && after->soc_percent >= bound.lowest_percent[i + 1] ? enough : too_low) = middle;
-        }
-        bound.lowest_percent[i] = too_low;
+        const auto& best = bound.best_state[i];
+        const double too_low = best.soc_percent - spare_percent;  // two charges never approach each other
+        bound.lowest_percent[i] = last_true(too_low, best.soc_percent, halvings, [&](double percent) {
+            const battery::BatteryState tried{percent, best.rc_voltage_v};
+            const auto after = advance_slot(problem.dynamics, i, range_of(problem, i).least, tried);
+            return !after || after->soc_percent < bound.lowest_percent[i + 1];
+        });
     }
 }
 

@@ -1,10 +1,11 @@
 #include "mission/sampling/joint_spread.h"
 
+#include "base/number.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -125,16 +126,13 @@ double share_at(double drawn, double degrees_of_freedom, double confidence) {
         shifted.push_back(t * std::sqrt(quantile(squares, (i + 0.5) / nodes) / degrees_of_freedom));
     const auto [least, most] = std::ranges::minmax(shifted);
     constexpr double far = 10.0;  // standard normal deviations
-    double low = least - far;
-    double high = most + far;
     constexpr int halvings = 60;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = std::midpoint(low, high);
+    const double parameter = last_true(least - far, most + far, halvings, [&](double tried) {
         double above = 0.0;
-        for (const double at : shifted) above += cdf(Normal(), at - middle) / nodes;
-        (above > 1.0 - confidence ? low : high) = middle;
-    }
-    return cdf(complement(Normal(), low / std::sqrt(flights)));
+        for (const double at : shifted) above += cdf(Normal(), at - tried) / nodes;
+        return above > 1.0 - confidence;
+    });
+    return cdf(complement(Normal(), parameter / std::sqrt(flights)));
 }
 
 }  // namespace
