@@ -128,8 +128,7 @@ std::optional<mission::MissionSetup> setup_of_question(const mission::MissionVar
 
 double mean_cruise_power_w(const mission::MissionSetup& mission) {
     if (mission.cruise_level) return mission.cruise_level->mean_w;
-    const auto& cruise = mission.mechanical->phases[Phase::cruise];
-    return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    return mean_power_w(mission.mechanical->phases[Phase::cruise]);
 }
 
 /// Why no time is known with that probability; empty if it may be.

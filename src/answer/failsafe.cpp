@@ -31,14 +31,6 @@ double rounded_up(double value, double steps_per_unit = 1.0) {
     return std::ceil(value * steps_per_unit - whole_step) / steps_per_unit;
 }
 
-/// The pack in a settled load, whose RC pair is a resistance in series.
-battery::Battery settled(battery::Battery battery) {
-    if (!battery.thevenin) return battery;
-    battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
-    battery.thevenin->rc_resistance_ohm = 0.0;
-    return battery;
-}
-
 double settled_current_a(const battery::Battery& pack, double soc_percent, double power_w) {
     return limited_current_a(pack, power_w, {soc_percent, 0.0});
 }
@@ -143,9 +135,7 @@ std::optional<FailsafeAction> make_action(const Fleet& fleet, bool is_return, do
                                ? std::numeric_limits<double>::max()
                                : loaded_voltage_v(draw.settled_pack, needed.back(), draw.cruise_w));
     }
-    auto sorted = usable_ah;
-    std::ranges::sort(sorted);
-    const double usable = quantile(sorted, 1.0 - probability);
+    const double usable = quantile_of(usable_ah, 1.0 - probability);
     const double capacity_mah = fleet.capacity_ah / units::milli;
     const double remaining_mah = rounded_up(std::max(least_mah, capacity_mah - usable / units::milli));
     if (remaining_mah > capacity_mah) return std::nullopt;
@@ -161,9 +151,7 @@ std::optional<FailsafeAction> make_action(const Fleet& fleet, bool is_return, do
     if (!fleet.pack.thevenin) return action;
     action.voltage =
         voltage_threshold(fleet, loaded_voltage_v(fleet.pack, soc_percent, fleet.cruise_w), used_ah, needed_v);
-    auto sorted_v = needed_v;
-    std::ranges::sort(sorted_v);
-    if (const double alone_v = quantile(sorted_v, probability); alone_v < std::numeric_limits<double>::max() / 2.0)
+    if (const double alone_v = quantile_of(needed_v, probability); alone_v < std::numeric_limits<double>::max() / 2.0)
         action.voltage_alone = voltage_threshold(fleet, alone_v, used_ah, needed_v);
     return action;
 }
@@ -218,7 +206,7 @@ WayHome way_home(const FailsafeRequest& request) {
 mechanical::ConstantPower measured_cruise(const mechanical::MechanicalModel& model, double duration_s) {
     const auto forecast = forecast_of(model, cruise);
     const auto& curve = model.phases[cruise];
-    mechanical::ConstantPower power{energy_j(curve.fourier, curve.duration_s) / curve.duration_s, std::nullopt, 0.0};
+    mechanical::ConstantPower power{mean_power_w(curve), std::nullopt, 0.0};
     if (!curve.level_spread) return power;
     const auto& spread = *curve.level_spread;
     const double between_w2 = std::pow(spread.between_flight_sd_w, 2) * (1.0 + forecast.weight_square_sum);
@@ -312,10 +300,8 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
                                                 fleet.cruise_w, *way.distance_m / way.duration_s));
         }
     }
-    add(Ground::measured,
-        fmt::format("landing: {:.0f} s at {:.1f} W, the mean of the flights", phases[landing].duration_s,
-                    energy_j(phases[landing].fourier, phases[landing].duration_s) / phases[landing].duration_s +
-                        request.compute_w));
+    add(Ground::measured, fmt::format("landing: {:.0f} s at {:.1f} W, the mean of the flights",
+                                      phases[landing].duration_s, mean_power_w(phases[landing]) + request.compute_w));
     add(Ground::assumption, fmt::format("reserve: {:g} %, {}; the critical action keeps {:g} %", reserve_percent,
                                         request.reserve_percent ? "as stated" : "as none is stated",
                                         critical_reserve_part * reserve_percent));

@@ -41,6 +41,11 @@ double quantile(std::span<const double> sorted, double probability) {
     return std::lerp(sorted[below], sorted[below + 1], place - static_cast<double>(below));
 }
 
+double quantile_of(std::vector<double> values, double probability) {
+    std::ranges::sort(values);
+    return quantile(values, probability);
+}
+
 double normal_quantile(double probability) {
     return boost::math::quantile(boost::math::normal_distribution<double>(), probability);
 }

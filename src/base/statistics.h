@@ -34,6 +34,9 @@ double median_high(std::vector<double> values);
 /// must not be empty; `probability` from 0 to 1.
 double quantile(std::span<const double> sorted, double probability);
 
+/// Returns the same of values in any order.
+double quantile_of(std::vector<double> values, double probability);
+
 /// Quantile of the standard normal distribution; `probability` above 0 and below 1.
 double normal_quantile(double probability);
 

@@ -93,6 +93,13 @@ double warmed_resistance_ohm(const Battery& battery, double warming_per_j, doubl
     return battery.resistance_ohm / (1.0 + warming_per_j * battery.resistance_ohm * heat_a2s);
 }
 
+Battery settled(Battery battery) {
+    if (!battery.thevenin) return battery;
+    battery.resistance_ohm += battery.thevenin->rc_resistance_ohm;
+    battery.thevenin->rc_resistance_ohm = 0.0;
+    return battery;
+}
+
 double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a) {
     return source_voltage_v(battery, state) - battery.resistance_ohm * current_a;
 }

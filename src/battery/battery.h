@@ -102,6 +102,9 @@ double source_voltage_v(const Battery& battery, const BatteryState& state);
 /// [ohm] in series after so much heat of the current in one ohm [J], as the pack warms; 1/R rises with the heat.
 double warmed_resistance_ohm(const Battery& battery, double warming_per_j, double heat_a2s);
 
+/// Returns the battery under a settled load: its RC pair is a resistance in series.
+Battery settled(Battery battery);
+
 /// [V] at the load that draws `current_a`.
 double terminal_voltage_v(const Battery& battery, const BatteryState& state, double current_a);
 

@@ -63,12 +63,6 @@ std::string heading(const mechanical::MechanicalModel& model, const std::string&
         boost::algorithm::to_upper_copy(prefix), prefix);
 }
 
-std::size_t model_order(const mechanical::MechanicalModel& model) {
-    std::size_t order = 1;  // C has no arrays of length 0
-    for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
-    return order;
-}
-
 /// One row a phase, filled up with zeros.
 std::string rows(const mechanical::MechanicalModel& model, std::vector<double> mechanical::FourierModel::*member,
                  std::size_t order) {
@@ -102,7 +96,7 @@ std::string constants(const mechanical::MechanicalModel& model, std::size_t orde
 }
 
 std::string curve_functions(const mechanical::MechanicalModel& model, const std::string& prefix) {
-    const auto order = model_order(model);
+    const auto order = std::max<std::size_t>(1, model_order(model));  // C has no arrays of length 0
     const auto values = constants(model, order);
     const auto durations = a_phase(model, [](const mechanical::PhaseModel& phase) { return phase.duration_s; });
     return fmt::format(

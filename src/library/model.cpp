@@ -51,8 +51,7 @@ double power_w(const Model& model, Phase phase, double time_s) {
 }
 
 double mean_power_w(const Model& model, Phase phase) {
-    const auto predicting = predicting_phase(model, phase);
-    return mechanical::energy_j(predicting.fourier, predicting.duration_s) / predicting.duration_s;
+    return mechanical::mean_power_w(predicting_phase(model, phase));
 }
 
 bool has_curve(const Model& model, Phase phase) { return !predicting_phase(model, phase).fourier.cos_w.empty(); }

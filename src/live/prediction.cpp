@@ -239,10 +239,6 @@ void add_other_phases(const PredictionInput& input, Prediction& prediction) {
     prediction.remaining_energy = sum_of(sum_of(prediction.takeoff, prediction.cruise.energy), prediction.landing);
 }
 
-double mean_power_w(const mechanical::PhaseModel& phase) {
-    return phase.duration_s > 0.0 ? energy_j(phase.fourier, phase.duration_s) / phase.duration_s : 0.0;
-}
-
 /// Adds to the variances how long the phases ahead may take. Where the time until the landing is stated, a longer
 /// take-off shortens the cruise.
 void add_durations(const PredictionInput& input, const DurationEstimate& takeoff, const DurationEstimate& landing,

@@ -90,10 +90,8 @@ std::string sortie_name(const std::string& flight, std::size_t sortie) {
 
 std::optional<double> pack_voltage_v(const flight::FlightData& data) {
     constexpr double exceeded_by = 0.01;
-    auto values = data.voltage_v.value;
-    if (values.empty()) return std::nullopt;
-    std::ranges::sort(values);
-    return quantile(values, 1.0 - exceeded_by);
+    if (data.voltage_v.value.empty()) return std::nullopt;
+    return quantile_of(data.voltage_v.value, 1.0 - exceeded_by);
 }
 
 MeasuredFlights extract_flights(const flight::FlightData& data, const flight::FlightPhases& phases) {

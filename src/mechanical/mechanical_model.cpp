@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -350,6 +349,10 @@ FourierModel time_scaled_model(const PhaseModel& phase, double flown_s, PhaseTim
     return flown;
 }
 
+double mean_power_w(const PhaseModel& phase) {
+    return phase.duration_s > 0.0 ? energy_j(phase.fourier, phase.duration_s) / phase.duration_s : 0.0;
+}
+
 double duration_at_height_s(const PhaseModel& phase, double height_m) {
     const auto& heights = phase.heights.value();
     return phase.duration_s + (std::max(height_m, heights.low_m) - heights.mean_m) / heights.m_per_s;
@@ -469,8 +472,7 @@ MechanicalModel read_predicting_model(const std::filesystem::path& path) {
                 lowest_w = std::min(lowest_w, *part->mean_power_w);
                 highest_w = std::max(highest_w, *part->mean_power_w);
             }
-        const auto& [fourier, duration_s] = std::tie(model.phases[phase].fourier, model.phases[phase].duration_s);
-        const double mean_w = energy_j(fourier, duration_s) / duration_s;
+        const double mean_w = mean_power_w(model.phases[phase]);
         if (highest_w == lowest_w || (mean_w >= max_times * lowest_w && mean_w <= max_times * highest_w)) continue;
         throw InputError({path.string()},
                          fmt::format("[{}]: its curve has a mean of {:.4g} W, and its flights of {:.4g} to {:.4g} W: "
@@ -490,13 +492,18 @@ std::string to_toml(const MechanicalModel& model) {
            format_line() + fields.lines() + "\n";
 }
 
+std::size_t model_order(const MechanicalModel& model) {
+    std::size_t order = 0;
+    for (const auto& phase : model.phases.values) order = std::max(order, phase.fourier.cos_w.size());
+    return order;
+}
+
 double power_beyond_straight_flight_w(const MechanicalModel& model) {
     const auto& physical = model.physical;
     if (!physical || !(physical->mean_airspeed_m_per_s > 0.0)) return 0.0;
-    const auto& cruise = model.phases[flight::Phase::cruise];
     const auto straight = term_values({physical->mean_airspeed_m_per_s}, physical->load);
-    return std::max(0.0, energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s -
-                             std::max(0.0, sum_of_terms_w(*physical, straight)));
+    return std::max(
+        0.0, mean_power_w(model.phases[flight::Phase::cruise]) - std::max(0.0, sum_of_terms_w(*physical, straight)));
 }
 
 }  // namespace flightwatt::mechanical

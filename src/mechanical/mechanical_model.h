@@ -124,6 +124,9 @@ struct PhaseModel {
     std::optional<PhaseHeights> heights = {};  ///< absent of the cruise, and in files of 0.2
 };
 
+/// Returns the mean of the phase's curve over its duration [W]; 0 without a duration.
+double mean_power_w(const PhaseModel& phase);
+
 /// Returns how long a take-off to this height, or a landing from it, takes at the rate of the phase's flights; none
 /// shorter than from the least height that was flown. The phase must have heights.
 double duration_at_height_s(const PhaseModel& phase, double height_m);
@@ -213,6 +216,9 @@ std::vector<std::string> model_warnings(const MechanicalModel& model);
 /// Remarks on the fit, a line each: what predicts a phase and why, samples excluded, a frequency at a bound or not
 /// determined, reduced harmonics.
 std::vector<std::string> fit_notes(const MechanicalModel& model);
+
+/// Returns the most harmonics that a phase of the model has.
+std::size_t model_order(const MechanicalModel& model);
 
 /// Returns what the cruise of the model's flights takes beyond level flight straight ahead at their mean airspeed, by
 /// turns, climbs and gusts [W], at least 0; 0 if no airspeed is known.

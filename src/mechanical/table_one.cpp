@@ -20,12 +20,6 @@ std::string percent_of_change(double was, double is) {
     return was == 0.0 ? "-" : as_printed((is - was) / was * units::percent_per_whole);
 }
 
-std::size_t model_order(const MechanicalModel& model) {
-    std::size_t order = 0;
-    for (const auto phase : flight::all_phases) order = std::max(order, model.phases[phase].fourier.cos_w.size());
-    return order;
-}
-
 std::vector<std::string> row_names(std::size_t order) {
     std::vector<std::string> names{"a0"};
     for (std::size_t n = 1; n <= order; ++n) {

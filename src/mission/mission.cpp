@@ -32,9 +32,8 @@ void require_single_flight(const MissionSetup& mission) {
 }
 
 mechanical::PhysicalModel constant_cruise_power(const mechanical::MechanicalModel& model) {
-    const auto& cruise = model.phases[Phase::cruise];
     mechanical::PhysicalModel power;
-    add_constant_power(energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s, power);
+    add_constant_power(mean_power_w(model.phases[Phase::cruise]), power);
     return power;
 }
 

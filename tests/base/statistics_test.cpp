@@ -30,6 +30,7 @@ TEST(Statistics, QuantilesLieOnStraightLinesBetweenSortedValues) {
     EXPECT_EQ(quantile(values, 0.75), 3.0);
     EXPECT_EQ(quantile(values, 1.0), 4.0);
     EXPECT_EQ(quantile(std::vector<double>{7.0}, 0.5), 7.0);
+    EXPECT_EQ(quantile_of({4.0, 1.0, 2.0}, 0.25), 1.5);
 }
 
 TEST(Statistics, HalfWidthsAsInAnyTable) {

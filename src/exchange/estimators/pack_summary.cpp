@@ -19,11 +19,7 @@ PackSummary summarize_pack(const EstimatorInput& input, const std::string& reade
     constexpr double max_charged_cell_v = 4.25;
     constexpr double max_reserve_percent = 50.0;  // less charge does not determine a line
     PackSummary pack;
-    pack.battery = *input.battery;
-    if (pack.battery.thevenin) {
-        pack.battery.resistance_ohm += pack.battery.thevenin->rc_resistance_ohm;
-        pack.battery.thevenin->rc_resistance_ohm = 0.0;
-    }
+    pack.battery = settled(*input.battery);
     const double full_v = open_circuit_voltage_v(pack.battery, units::percent_per_whole);
     const auto min_cells = static_cast<int>(std::max(1.0, std::ceil(full_v / max_charged_cell_v)));
     pack.cells = input.cells_in_series.value_or(pack.battery.cells.value_or(min_cells));
@@ -55,8 +51,7 @@ const mechanical::MechanicalModel& required_model(const EstimatorInput& input, c
 }
 
 double mean_power_w(const EstimatorInput& input, flight::Phase phase) {
-    const auto& curve = input.model.value().phases[phase];
-    return energy_j(curve.fourier, curve.duration_s) / curve.duration_s + input.compute_w;
+    return mean_power_w(input.model.value().phases[phase]) + input.compute_w;
 }
 
 double cruise_current_a(const EstimatorInput& input, const PackSummary& pack) {

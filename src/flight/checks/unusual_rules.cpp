@@ -236,9 +236,7 @@ Findings powerless_climb(const PowerRecord& record) {
         const auto& lift_off = sorties[s].phases.front();
         if (lift_off.phase != Phase::takeoff || !lift_off.complete || flown.size() < 2) continue;
         const auto power_w = part_of(record.power_w, flown);
-        std::vector<double> sorted(power_w.begin(), power_w.end());
-        std::ranges::sort(sorted);
-        const double idle_w = idle_fraction * quantile(sorted, 0.75);
+        const double idle_w = idle_fraction * quantile_of({power_w.begin(), power_w.end()}, 0.75);
         const auto powered = static_cast<std::size_t>(
             std::ranges::find_if(power_w, [&](double watts) { return watts >= idle_w; }) - power_w.begin());
         if (powered < powerless_samples) continue;

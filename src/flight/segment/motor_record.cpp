@@ -18,11 +18,6 @@ namespace {
 
 constexpr double glitch_s = 10.0;  // throttle without power for a shorter time is an error of the record
 
-double quantile_of(std::vector<double> values, double probability) {
-    std::ranges::sort(values);
-    return quantile(values, probability);
-}
-
 struct PowerLevels {
     double idle_w;
     double running_w;

@@ -105,9 +105,7 @@ SuspectInterval suspect_samples(const DeviceTable& table, const DeviceComparison
 
 /// A motor that is stuck, or almost without power while the others run; expected is their median.
 SuspectInterval check_motor(const DeviceTable& table, const DeviceComparison& compared) {
-    auto sorted = compared.median_w;
-    std::ranges::sort(sorted);
-    const double running_w = motor_on_fraction * quantile(sorted, 0.75);
+    const double running_w = motor_on_fraction * quantile_of(compared.median_w, 0.75);
     const auto others_w = [&](std::size_t i) { return compared.median_w[i]; };
     const auto idles = [&](std::size_t i) {
         return others_w(i) > running_w && compared.own_w[i] < off_fraction * others_w(i);

@@ -41,8 +41,7 @@ const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& 
 /// Shifts the model's cruise so that its mean over the model's own duration is this power.
 void set_cruise_level(const mechanical::ConstantPower& level, MissionSetup& mission) {
     auto& cruise = mission.mechanical->phases[Phase::cruise];
-    const double model_mean_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
-    cruise.fourier.a0_w += level.mean_w - model_mean_w;
+    cruise.fourier.a0_w += level.mean_w - mean_power_w(cruise);
     mission.cruise_level = level;
 }
 
@@ -52,9 +51,8 @@ void add_unexplained_power(mechanical::PhysicalModel& power, MissionSetup& missi
     constexpr std::size_t enough_flights = 3;
     constexpr double max_unexplained_part = 0.25;
     const auto& model = *mission.mechanical;
-    const auto& cruise = model.phases[Phase::cruise];
     const double added_w = power_beyond_straight_flight_w(model);
-    const double cruise_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    const double cruise_w = mean_power_w(model.phases[Phase::cruise]);
     if (model.flights.size() >= enough_flights || added_w <= max_unexplained_part * cruise_w) return;
     add_constant_power(added_w, power);
     mission.notes.push_back(fmt::format(

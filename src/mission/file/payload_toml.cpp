@@ -114,8 +114,7 @@ void scale_phases(double factor, MechanicalModel& model) {
 void require_plausible_mass(const TomlTable& table, double mass_kg, double payload_kg, const MechanicalModel& model) {
     constexpr double max_payload_ratio = 2.0;
     const double least_w_per_kg = model.is_rotorcraft ? 10.0 : 1.0;  // helicopters take 50 or more, sailplanes 5
-    const auto& cruise = model.phases[flight::Phase::cruise];
-    const double power_w = energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
+    const double power_w = mean_power_w(model.phases[flight::Phase::cruise]);
     if (power_w < least_w_per_kg * mass_kg)
         throw InputError(table.where("takeoff_mass_kg"),
                          fmt::format("{} kg cannot fly with the {:.0f} W of the model's cruise", mass_kg, power_w),
@@ -130,9 +129,8 @@ void require_plausible_mass(const TomlTable& table, double mass_kg, double paylo
 void widen(double sd, MechanicalModel& model) {
     for (auto& phase : model.phases.values) {
         if (!phase.level_spread) continue;
-        const double mean_w = energy_j(phase.fourier, phase.duration_s) / phase.duration_s;
         auto& sd_w = phase.level_spread->between_flight_sd_w;
-        sd_w = std::hypot(sd_w, sd * mean_w);
+        sd_w = std::hypot(sd_w, sd * mean_power_w(phase));
     }
     if (model.physical && model.physical->level_sd)
         model.physical->level_sd = std::hypot(*model.physical->level_sd, sd);

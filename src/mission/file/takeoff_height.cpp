@@ -84,7 +84,7 @@ void set_takeoff_and_landing(MissionSetup& mission) {
     bool is_known = true;
     for (const auto phase : {Phase::takeoff, Phase::landing}) {
         const auto& model = mission.mechanical->phases[phase];
-        const double mean_w = mechanical::energy_j(model.fourier, model.duration_s) / model.duration_s;
+        const double mean_w = mean_power_w(model);
         auto& duration_s = mission.duration_s[phase];
         if (mission.duration_is_stated[phase]) {
             energy_j += mean_w * duration_s;
