@@ -96,6 +96,15 @@ FlightPath path_between(const FlightPath& path, const PathPosition& from, const 
     return between;
 }
 
+double distance_between_m(const LocalPosition& a, const LocalPosition& b) {
+    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
+}
+
+double course_between(const LocalPosition& from, const LocalPosition& to) {
+    const auto way = to - from;
+    return std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
+}
+
 LocalPosition moved(const LocalPosition& from, double length_m, double course_deg) {
     const double course_rad = course_deg / units::degree_per_rad;
     return {from.east_m + length_m * std::sin(course_rad), from.north_m + length_m * std::cos(course_rad)};

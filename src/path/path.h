@@ -110,6 +110,17 @@ struct PathOrigin {
     bool is_above_ground = false;           ///< what the altitude is above is known
 };
 
+/// Returns the distance between two places.
+double distance_between_m(const LocalPosition& a, const LocalPosition& b);
+
+/// Returns the course from one place to another, -180 to 180 degrees.
+double course_between(const LocalPosition& from, const LocalPosition& to);
+
+/// Returns the product of the lengths of two positions and the cosine of the angle between them, seen from the origin.
+inline double scalar_product(const LocalPosition& a, const LocalPosition& b) {
+    return a.east_m * b.east_m + a.north_m * b.north_m;
+}
+
 /// Returns a position moved straight over ground.
 LocalPosition moved(const LocalPosition& from, double length_m, double course_deg);
 

@@ -121,7 +121,7 @@ class PathBuilder {
         if (altitude_m_ && (entry.hold_s || entry.duration_s || rate(entry, *entry.altitude_m > *altitude_m_)))
             return false;
         const auto place = place_of(entry);
-        return place && std::hypot(place->east_m - place_.east_m, place->north_m - place_.north_m) <= same_place_m;
+        return place && distance_between_m(*place, place_) <= same_place_m;
     }
 
     std::optional<LocalPosition> place_of(const PathEntry& entry) const {
@@ -131,7 +131,7 @@ class PathBuilder {
             refuse(entry, "has a latitude, on a path in metres", "give all places in the same coordinates");
         if (!entry.place && !entry.geographic) return std::nullopt;
         const auto place = entry.place ? *entry.place : to_local(*entry.geographic, *origin_);
-        const double distance_m = std::hypot(place.east_m - start_.east_m, place.north_m - start_.north_m);
+        const double distance_m = distance_between_m(place, start_);
         if (!(distance_m < max_m)) {
             refuse(entry, fmt::format("is {:.4g} km from the start", distance_m / 1000.0),
                    fmt::format("expected less than {:.0f} km: are latitude and longitude the right way round?",
@@ -141,9 +141,8 @@ class PathBuilder {
     }
 
     void fly_to(const PathEntry& entry, const LocalPosition& there) {
-        const auto way = there - place_;
-        const double length_m = std::hypot(way.east_m, way.north_m);
-        const double course_deg = std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
+        const double length_m = distance_between_m(place_, there);
+        const double course_deg = course_between(place_, there);
         if (entry.duration_s) {
             if (length_m > same_place_m) course_deg_ = std::fmod(course_deg + 360.0, 360.0);
             add_element(entry, Hold{*entry.duration_s, Leg{length_m, course_deg_}});
@@ -161,10 +160,8 @@ class PathBuilder {
 
     /// Straight towards the centre, or from it, to the edge.
     void fly_to_circle(const PathEntry& entry, const LocalPosition& centre) {
-        const auto out = place_ - centre;
-        const bool is_at_centre = std::hypot(out.east_m, out.north_m) <= same_place_m;
-        const double bearing_deg =
-            is_at_centre ? course_deg_ : std::atan2(out.east_m, out.north_m) * units::degree_per_rad;
+        const bool is_at_centre = distance_between_m(centre, place_) <= same_place_m;
+        const double bearing_deg = is_at_centre ? course_deg_ : course_between(centre, place_);
         fly_to(entry, moved(centre, *entry.radius_m, bearing_deg));
         course_deg_ = std::fmod(bearing_deg + (entry.to_right ? 90.0 : 270.0) + 360.0, 360.0);
     }

@@ -104,8 +104,6 @@ constexpr std::size_t max_ahead = 100;
 constexpr double leaves = 0.02;
 constexpr double comes_back = 0.05;
 
-double dot(const LocalPosition& a, const LocalPosition& b) { return a.east_m * b.east_m + a.north_m * b.north_m; }
-
 Eigen::Vector2d vector_of(const LocalPosition& of) { return {of.east_m, of.north_m}; }
 
 PathGrid make_path_grid(const PathForecast& path) {
@@ -286,8 +284,9 @@ double PathFilter::log_likelihood(std::size_t i) const {
     const auto& point = grid_.points[i];
     if (point.is_unconstrained) return anywhere;
     const Eigen::Vector2d offset = vector_of(last_.at - origin_ - point.at);
-    const bool have_courses = dot(point.course, point.course) > 0.0 && dot(last_.course, last_.course) > 0.0;
-    const double turned = have_courses ? 1.0 - dot(point.course, last_.course) : 0.0;
+    const bool have_courses =
+        scalar_product(point.course, point.course) > 0.0 && scalar_product(last_.course, last_.course) > 0.0;
+    const double turned = have_courses ? 1.0 - scalar_product(point.course, last_.course) : 0.0;
     return -0.5 * offset.dot(offset_information_ * offset) - course_weight * turned;
 }
 
@@ -317,9 +316,9 @@ double PathFilter::nearest_position() const {
     }
     const auto& point = grid_.points[nearest];
     if (point.is_unconstrained) return middle;
-    const double ahead_m = dot(last_.at - origin_ - point.at, point.course);
-    const auto step = grid_.points[std::min(nearest + 1, on_.size() - 1)].at - point.at;
-    const double step_m = std::max(1.0, std::hypot(step.east_m, step.north_m));
+    const double ahead_m = scalar_product(last_.at - origin_ - point.at, point.course);
+    const auto& next = grid_.points[std::min(nearest + 1, on_.size() - 1)];
+    const double step_m = std::max(1.0, distance_between_m(point.at, next.at));
     return static_cast<double>(nearest) + std::clamp(ahead_m / step_m, -0.5, 0.5);
 }
 

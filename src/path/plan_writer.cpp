@@ -109,11 +109,11 @@ class StopList {
         if (circles == nullptr || elements_[i + 1].airspeed_m_per_s != elements_[i].airspeed_m_per_s) return false;
         const auto middle = centre(*circles, at_);
         const auto out = before - middle;
-        const double distance_m = std::hypot(out.east_m, out.north_m);
+        const double distance_m = distance_between_m(before, middle);
         if (distance_m < written_place_m) return false;
         const double scale = circles->radius_m / distance_m;
-        return std::hypot(middle.east_m + scale * out.east_m - at_.east_m,
-                          middle.north_m + scale * out.north_m - at_.north_m) < written_place_m;
+        const auto edge = middle + LocalPosition{scale * out.east_m, scale * out.north_m};
+        return distance_between_m(edge, at_) < written_place_m;
     }
 
     const PlanToWrite& plan_;

@@ -36,8 +36,7 @@ double length_m(const std::variant<Leg, Circles, Hold>& shape) {
 }
 
 LocalPosition after(const LocalPosition& at, const PathElement& element) {
-    const auto way = local_position_at({{element}}, {1, 0.0});
-    return {at.east_m + way.east_m, at.north_m + way.north_m};
+    return at + local_position_at({{element}}, {1, 0.0});
 }
 
 /// The poses between which an element is drawn; of a hold without a leg the courses are absent.
@@ -202,9 +201,8 @@ class WingTurns {
 
     /// Flies an element to a pose, straight where that leads there.
     void fly_to(std::size_t i, const Pose& target) {
-        const auto way = target.place - at_.place;
-        const double straight_m = std::hypot(way.east_m, way.north_m);
-        const double course_deg = std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
+        const double straight_m = distance_between_m(at_.place, target.place);
+        const double course_deg = course_between(at_.place, target.place);
         const bool is_there = straight_m <= same_place_m && !is_bent(at_.course_deg, target.course_deg);
         const bool is_straight = straight_m > same_place_m && !is_bent(at_.course_deg, course_deg) &&
                                  !is_bent(target.course_deg, course_deg);

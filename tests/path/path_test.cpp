@@ -40,6 +40,15 @@ TEST(Path, KnowsWhereAPlaceLies) {
     }
 }
 
+TEST(Path, HasDistancesAndCoursesBetweenPlaces) {
+    const LocalPosition a{1.0, 2.0};
+    const LocalPosition b{-2.0, 6.0};
+    EXPECT_DOUBLE_EQ(distance_between_m(a, b), 5.0);
+    EXPECT_NEAR(course_between(a, {1.0, 1.0}), 180.0, 1e-9);
+    EXPECT_NEAR(course_between(a, {0.0, 2.0}), -90.0, 1e-9);
+    EXPECT_DOUBLE_EQ(scalar_product(a, b), 10.0);
+}
+
 TEST(Path, LeadsThereAndBack) {
     FlightPath path{
         {element_of(Leg{300.0, 90.0}), element_of(Circles{50.0, 1.0}), climbing(element_of(Leg{400.0, 0.0}), 40.0)}};

@@ -206,8 +206,7 @@ class BlockReader {
         const auto first = waypoint(stage, attribute(stage, "p1"));
         const auto second = *waypoint(stage, attribute(stage, "p2")).place;
         const double radius_m = radius(stage, attribute(stage, "radius"));
-        const auto way = *first.place - second;
-        const double round_m = 2.0 * std::hypot(way.east_m, way.north_m) + circumference_m(radius_m);
+        const double round_m = 2.0 * distance_between_m(*first.place, second) + circumference_m(radius_m);
         double count = rounds(stage, {"NavOvalCount", "nav_oval_count"}, round_m, "the oval");
         const auto until = attribute(stage, "until");  // the counter is a whole number: above 3 are 4 rounds
         if (const auto limit = find_limit(until, {"NavOvalCount", "nav_oval_count"}))

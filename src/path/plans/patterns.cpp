@@ -1,24 +1,13 @@
 #include "path/plans/patterns.h"
 
-#include "base/units.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 namespace flightwatt::path {
-namespace {
 
-double scalar_product(const LocalPosition& a, const LocalPosition& b) {
-    return a.east_m * b.east_m + a.north_m * b.north_m;
-}
-
-LocalPosition direction(double course_deg) { return moved({}, 1.0, course_deg); }
-
-}  // namespace
-
-CourseAxes axes_of(double course_deg) { return {direction(course_deg), direction(course_deg + 90.0)}; }
+CourseAxes axes_of(double course_deg) { return {moved({}, 1.0, course_deg), moved({}, 1.0, course_deg + 90.0)}; }
 
 CoursePosition along_and_across(const LocalPosition& place, const CourseAxes& axes) {
     return {scalar_product(place, axes.along), scalar_product(place, axes.right)};
@@ -92,15 +81,6 @@ std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPo
         is_back = !is_back;
     }
     return lines;
-}
-
-double distance_between_m(const LocalPosition& a, const LocalPosition& b) {
-    return std::hypot(a.east_m - b.east_m, a.north_m - b.north_m);
-}
-
-double course_between(const LocalPosition& from, const LocalPosition& to) {
-    const auto way = to - from;
-    return std::atan2(way.east_m, way.north_m) * units::degree_per_rad;
 }
 
 PathEntry with_circles(PathEntry entry, double turns, double radius_m) {

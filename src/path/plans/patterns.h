@@ -72,11 +72,6 @@ bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition&
 /// Returns lines in alternating directions, the first one from the end that is nearer to `at`.
 std::vector<SurveyLine> alternating(std::vector<SurveyLine> lines, const LocalPosition& at);
 
-double distance_between_m(const LocalPosition& a, const LocalPosition& b);
-
-/// Returns the course [degrees] from one place to another.
-double course_between(const LocalPosition& from, const LocalPosition& to);
-
 /// Returns the entry with circles: radii above 0 are to the right.
 PathEntry with_circles(PathEntry entry, double turns, double radius_m);
 
