@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 
@@ -60,6 +61,14 @@ Discharge check_end(const Battery& battery, const LoadedState& at, double cutoff
     return checked;
 }
 
+/// The number of steps of fast_discharge: over longer ones than its time constant the RC pair's transient is no parabola;
+/// time constants below some seconds have little effect.
+std::uint64_t fast_steps(const TheveninCircuit& circuit, double length_s, double max_s) {
+    constexpr double short_s = 2.0;
+    if (circuit.rc_resistance_ohm > 0.0) max_s = std::min(max_s, std::max(short_s, circuit.rc_time_constant_s));
+    return static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_s * (1.0 - 1e-12))));
+}
+
 }  // namespace
 
 Discharge discharge(const Battery& battery, const Load& load, const BatteryState& state,
@@ -92,13 +101,6 @@ Discharge discharge(const Battery& battery, const Load& load, const BatteryState
         now = {next_s, next.power_w, next.state};
     }
     return result;
-}
-
-// Over longer steps the RC pair's transient is no parabola; time constants below some seconds have little effect.
-std::uint64_t fast_steps(const TheveninCircuit& circuit, double length_s, double max_s) {
-    constexpr double short_s = 2.0;
-    if (circuit.rc_resistance_ohm > 0.0) max_s = std::min(max_s, std::max(short_s, circuit.rc_time_constant_s));
-    return static_cast<std::uint64_t>(std::max(1.0, std::ceil(length_s / max_s * (1.0 - 1e-12))));
 }
 
 Discharge fast_discharge(const Battery& battery, const Load& load, const BatteryState& state,

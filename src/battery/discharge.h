@@ -2,7 +2,6 @@
 
 #include "battery/battery.h"
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -62,9 +61,5 @@ struct FastDischargeOptions {
 /// Thévenin's, or as discharge().
 Discharge fast_discharge(const Battery& battery, const Load& load, const BatteryState& state,
                          const FastDischargeOptions& options);
-
-/// The number of steps of fast_discharge for a load of that length: none is longer than `max_s` or the RC pair's time
-/// constant.
-std::uint64_t fast_steps(const TheveninCircuit& circuit, double length_s, double max_s);
 
 }  // namespace flightwatt::battery
