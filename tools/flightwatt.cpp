@@ -160,10 +160,8 @@ int run_front(const std::string& word) {
     } else {
         if (const auto command = command_for(word); !command.empty())
             throw UsageError(fmt::format("'{}' is not a stage; for such a file: {}", word, command));
-        const auto near = nearest_word(word, stage_names());
-        throw UsageError(
-            fmt::format("there is no stage, file or folder '{}'; {}", word,
-                        near.empty() ? "flightwatt alone lists them" : fmt::format("did you mean '{}'?", near)));
+        throw UsageError(fmt::format("there is no stage, file or folder '{}'; {}", word,
+                                     meant_or(word, stage_names(), "flightwatt alone lists them")));
     }
     return cli::ok;
 }

@@ -62,6 +62,11 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     return nearest;
 }
 
+std::string meant_or(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
+    const auto near = nearest_word(word, known);
+    return near.empty() ? std::string(otherwise) : fmt::format("did you mean '{}'?", near);
+}
+
 namespace {
 
 Location location_of(const std::string& file, const toml::source_region& region) {

@@ -96,6 +96,8 @@ TomlTable parse_toml(std::string_view text, const std::string& file, FileKind ex
 /// The word among `known` that `word` was probably meant to be: one that contains it or has few other letters; empty
 /// if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+/// Returns "did you mean 'WORD'?" with the nearest word, or `otherwise` if none is near.
+std::string meant_or(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise);
 
 /// The numbers that a key may have.
 struct NumberRange {

@@ -83,9 +83,7 @@ void add_to(po::options_description& description, const Option& option) {
                                         const std::vector<Option>& known) {
     std::vector<std::string> names(known.size());
     std::ranges::transform(known, names.begin(), [](const auto& option) { return "--" + option.name; });
-    const auto near = nearest_word(name, names);
-    throw UsageError(
-        fmt::format("{}; {}", reason, near.empty() ? "see --help" : fmt::format("did you mean '{}'?", near)));
+    throw UsageError(fmt::format("{}; {}", reason, meant_or(name, names, "see --help")));
 }
 
 /// The texts of an option, under its name or its old one.

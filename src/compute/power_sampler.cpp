@@ -39,10 +39,8 @@ SamplerKind kind_of(const TomlTable& table) {
     }
     const auto known = std::ranges::find(kind_names, *name);
     if (known != kind_names.end()) return static_cast<SamplerKind>(known - kind_names.begin());
-    const auto near = nearest_word(*name, kind_names);
     throw InputError(table.where("kind"), fmt::format("there is no sampler '{}'", *name),
-                     near.empty() ? fmt::format("there are {}", fmt::join(kind_names, ", "))
-                                  : fmt::format("did you mean '{}'?", near));
+                     meant_or(*name, kind_names, fmt::format("there are {}", fmt::join(kind_names, ", "))));
 }
 
 /// Refuses a key that has no effect with this kind.

@@ -39,12 +39,10 @@ double unit_factor(const TomlTable& table, const std::string& track) {
 MappedTrack read_mapped_track(const TomlTable& table) {
     MappedTrack track;
     track.name = table.string("name");
-    if (std::ranges::find(track_names(), track.name) == track_names().end()) {
-        const auto near = nearest_word(track.name, track_names());
-        throw InputError(table.where("name"), fmt::format("unknown track '{}'", track.name),
-                         near.empty() ? fmt::format("expected {}", fmt::join(track_names(), ", "))
-                                      : fmt::format("did you mean '{}'?", near));
-    }
+    if (std::ranges::find(track_names(), track.name) == track_names().end())
+        throw InputError(
+            table.where("name"), fmt::format("unknown track '{}'", track.name),
+            meant_or(track.name, track_names(), fmt::format("expected {}", fmt::join(track_names(), ", "))));
     if (const auto column = table.optional_string("column")) track.columns = {*column};
     for (const auto& [key, combine, least] :
          {std::tuple{"columns", Combine::first, 1U}, {"product", Combine::product, 2U}, {"norm", Combine::norm, 1U}}) {

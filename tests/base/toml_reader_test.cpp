@@ -123,6 +123,11 @@ TEST(NearestWord, FindsMisspellingsAndNothingElse) {
     EXPECT_EQ(nearest_word("off", {"is_off_s", "off_duration_s", "offset"}), "offset");
 }
 
+TEST(NearestWord, IsTheHintWhereThereIsOne) {
+    EXPECT_EQ(meant_or("landng", {"takeoff", "landing"}, "see --help"), "did you mean 'landing'?");
+    EXPECT_EQ(meant_or("elephant", {"takeoff", "landing"}, "see --help"), "see --help");
+}
+
 const auto numbers = parse_toml("minus = -1\nzero = 0\nhalf = 0.5\nthree = 3\nhuge = 1e300\n", "m.toml");
 
 template <typename Read>

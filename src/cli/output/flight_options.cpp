@@ -31,10 +31,8 @@ void refuse_unknown(const std::set<std::string>& names, const std::string& optio
                     const std::vector<std::string>& flights) {
     for (const auto& name : names) {
         if (std::ranges::find(flights, name) != flights.end()) continue;
-        const auto near = nearest_word(name, flights);
-        throw UsageError(fmt::format(
-            "--{} {}: there is no such flight{}", option, name,
-            near.empty() ? "; there are " + short_list(flights) : fmt::format("; did you mean '{}'?", near)));
+        throw UsageError(fmt::format("--{} {}: there is no such flight; {}", option, name,
+                                     meant_or(name, flights, "there are " + short_list(flights))));
     }
 }
 

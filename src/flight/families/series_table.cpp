@@ -152,12 +152,9 @@ class TableReader {
         }
         std::vector<std::string> known{"time_s"};
         known.insert(known.end(), track_names().begin(), track_names().end());
-        if (std::find(known.begin(), known.end(), column) == known.end()) {
-            const auto near = nearest_word(column, known);
+        if (std::find(known.begin(), known.end(), column) == known.end())
             throw InputError({file_, line}, fmt::format("unknown column '{}'", column),
-                             near.empty() ? fmt::format("a series has {}", fmt::join(known, ", "))
-                                          : fmt::format("did you mean '{}'?", near));
-        }
+                             meant_or(column, known, fmt::format("a series has {}", fmt::join(known, ", "))));
         matter_.columns.push_back(column);
         matter_.series.tracks.push_back({.name = column, .source = std::string(plain_source_)});
         is_bound_.push_back(true);

@@ -68,11 +68,8 @@ void refuse_unknown_names(const TomlTable& table, const std::vector<std::string>
                           std::string_view of_none, std::string_view of_known) {
     for (const auto& key : table.keys()) {
         if (std::ranges::find(known, key) != known.end()) continue;
-        const auto near = nearest_word(key, known);
-        throw InputError(table.where(key), fmt::format("{} '{}'", what, key),
-                         !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                         : known.empty() ? std::string(of_none)
-                                         : fmt::format("{} {}", of_known, fmt::join(known, ", ")));
+        const auto all = known.empty() ? std::string(of_none) : fmt::format("{} {}", of_known, fmt::join(known, ", "));
+        throw InputError(table.where(key), fmt::format("{} '{}'", what, key), meant_or(key, known, all));
     }
 }
 
