@@ -8,7 +8,6 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -95,9 +94,6 @@ class ByteReader {
     /// Ends the stream and begins another one (file replaced, link reopened).
     virtual void restart() = 0;
 };
-
-/// Makes the reader of a stream: each sender of datagrams has its own, so that damage in one does not affect another.
-using MakeReader = std::function<std::unique_ptr<ByteReader>()>;
 
 /// Decodes the bytes of Paparazzi's link or a binary log.
 class LinkReader final : public ByteReader {
