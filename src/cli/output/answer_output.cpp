@@ -243,7 +243,11 @@ std::string failsafe_command(const AircraftAnswer& answer) {
 Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
     using R = AircraftAnswer;
     using Q = answer::Question;
-    const auto value = [](Answered Endurance::*of) { return at(&R::endurance, of, &Answered::value); };
+    // With what it rests on in JSON, and alone as a column.
+    const auto answered = [](const std::string& key, const std::string& description, auto... path) {
+        return Fields<R>{field(key, at(path...), description),
+                         field("csv_" + key, at(path..., &Answered::value), "", csv_column{key}, not_in_json{})};
+    };
     return list_fields<R>(
         field("aircraft", &R::aircraft, "a text for --aircraft", csv_column{}),
         field("aircraft_name", &R::name, "name in the logs", csv_column{}),
@@ -256,28 +260,18 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("wind_m_per_s", at(&R::question, &Q::wind_m_per_s), "steady wind", csv_column{}),
         field("wind_from_deg", at(&R::question, &Q::wind_from_deg), "null: not stated", csv_column{}),
         field("is_hover", at(&R::endurance, &Endurance::is_hover), "the power is that of hover", csv_column{}),
-        field("power_w", at(&R::endurance, &Endurance::power_w), "mean of hover or cruise"),
-        field("csv_power_w", value(&Endurance::power_w), "", csv_column{"power_w"}, not_in_json{}),
-        field("time_in_air_s", at(&R::endurance, &Endurance::time_s), "from a full pack to the reserve"),
-        field("csv_time_in_air_s", value(&Endurance::time_s), "", csv_column{"time_in_air_s"}, not_in_json{}),
-        field("time_in_air_95_s", at(&R::endurance, &Endurance::time_95_s), "what 95 of 100 flights reach"),
-        field("csv_time_in_air_95_s", value(&Endurance::time_95_s), "", csv_column{"time_in_air_95_s"}, not_in_json{}),
-        field("airspeed_m_per_s", at(&R::endurance, &Endurance::airspeed_m_per_s), "of the cruise"),
-        field("csv_airspeed_m_per_s", value(&Endurance::airspeed_m_per_s), "", csv_column{"airspeed_m_per_s"},
-              not_in_json{}),
-        field("distance_m", at(&R::endurance, &Endurance::distance_m), "over ground, out and back along the wind"),
+        answered("power_w", "mean of hover or cruise", &R::endurance, &Endurance::power_w),
+        answered("time_in_air_s", "from a full pack to the reserve", &R::endurance, &Endurance::time_s),
+        answered("time_in_air_95_s", "what 95 of 100 flights reach", &R::endurance, &Endurance::time_95_s),
+        answered("airspeed_m_per_s", "of the cruise", &R::endurance, &Endurance::airspeed_m_per_s),
+        answered("distance_m", "over ground, out and back along the wind", &R::endurance, &Endurance::distance_m),
         field("distance_across_m", at(&R::endurance, &Endurance::distance_across_m), "the same across it; null: calm"),
         field("return_airspeed_m_per_s", at(&R::endurance, &Endurance::return_airspeed_m_per_s),
               "of the failsafe's way home"),
-        field("csv_distance_m", value(&Endurance::distance_m), "", csv_column{"distance_m"}, not_in_json{}),
         field("best_speeds", at(&R::endurance, &Endurance::best_speeds), "of endurance and range"),
-        field("capacity_ah", at(&R::pack, &PackAnswer::capacity_ah), "of the pack"),
-        field("csv_capacity_ah", at(&R::pack, &PackAnswer::capacity_ah, &Answered::value), "",
-              csv_column{"capacity_ah"}, not_in_json{}),
+        answered("capacity_ah", "of the pack", &R::pack, &PackAnswer::capacity_ah),
         field("flights_capacity_ah_interval_95", at(&R::pack, &PackAnswer::flights_capacity_ah), "by the flights"),
-        field("resistance_ohm", at(&R::pack, &PackAnswer::resistance_ohm), "series resistance of the pack"),
-        field("csv_resistance_ohm", at(&R::pack, &PackAnswer::resistance_ohm, &Answered::value), "",
-              csv_column{"resistance_ohm"}, not_in_json{}),
+        answered("resistance_ohm", "series resistance of the pack", &R::pack, &PackAnswer::resistance_ohm),
         field("resistance_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_interval_ohm)),
         field("air_temperature_c_range", at(&R::pack, &PackAnswer::air_temperature_c), "means of the flights"),
         field("battery_temperature_c_range", at(&R::pack, &PackAnswer::battery_start_c), "of the flights' take-offs"),
@@ -285,9 +279,7 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
               csv_column{}),
         field("resistance_at_temperature_ohm", at(&R::pack, &PackAnswer::resistance_at_ohm), "at that temperature"),
         field("resistance_at_temperature_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_at_interval_ohm)),
-        field("prediction_error_percent", &R::prediction_error_percent, "of the energy of flights left out"),
-        field("csv_prediction_error_percent", at(&R::prediction_error_percent, &Answered::value), "",
-              csv_column{"prediction_error_percent"}, not_in_json{}),
+        answered("prediction_error_percent", "of the energy of flights left out", &R::prediction_error_percent),
         field("packs", &R::packs, "the packs of the flights"),
         field("failsafe", &R::failsafe, "values for an autopilot; null: unknown"),
         field("failsafe_missing", &R::failsafe_missing, "the reason why they are absent"),
