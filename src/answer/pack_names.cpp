@@ -131,11 +131,7 @@ std::string to_string(PackNaming naming) {
 
 std::vector<PackUse> pack_uses(const flight::FlightData& data, std::vector<battery::DischargeRecord> records,
                                const std::string& folder) {
-    auto start_s = data.start_clock_s;
-    if (!start_s || *start_s <= 0.0) {
-        const auto named = flight::start_in_name(data.flight);
-        start_s = named ? std::optional(static_cast<double>(named->time_since_epoch().count())) : std::nullopt;
-    }
+    const auto start_s = flight::start_clock_s(data.start_clock_s, data.flight);
     std::vector<PackUse> uses;
     bool is_first_pack = true;
     for (auto& record : records) {

@@ -40,6 +40,12 @@ std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name) {
            std::chrono::seconds{part(6)};
 }
 
+std::optional<double> start_clock_s(const std::optional<double>& logged_s, const std::string& name) {
+    if (logged_s && *logged_s > 0.0) return logged_s;
+    const auto start = start_in_name(name);
+    return start ? std::optional(static_cast<double>(start->time_since_epoch().count())) : std::nullopt;
+}
+
 FlightContent content_of(const FlightSeries& series) {
     FlightContent content;
     content.has_definitions = !series.log_is_missing;

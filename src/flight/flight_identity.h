@@ -15,6 +15,10 @@ namespace flightwatt::flight {
 /// std::nullopt without a valid time.
 std::optional<std::chrono::sys_seconds> start_in_name(const std::string& name);
 
+/// Returns when a log starts, in seconds since 1970: by its own clock (FlightData), or by its name. std::nullopt if
+/// neither states it.
+std::optional<double> start_clock_s(const std::optional<double>& logged_s, const std::string& name);
+
 /// Summary of a flight's samples, which identifies it.
 struct FlightContent {
     std::uint64_t fingerprint = 0;  ///< of all values of altitude, voltage, current and power; 0: all are constant

@@ -23,14 +23,6 @@
 namespace flightwatt::report {
 namespace {
 
-std::optional<double> start_clock_s(const ReportFlight& flight) {
-    const auto& logged_s = flight.data.start_clock_s;
-    if (logged_s && *logged_s > 0.0) return logged_s;
-    const auto start = flight::start_in_name(flight.name);
-    if (!start) return std::nullopt;
-    return static_cast<double>(start->time_since_epoch().count());
-}
-
 std::string date_of(const std::optional<double>& clock_s) {
     return clock_s ? fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(*clock_s))) : "";
 }
@@ -141,7 +133,7 @@ FlightSummary summarize_flight(const ReportFlight& flight, std::optional<std::si
     const flight::PowerStatistics power(data);
     const auto& airspeed = data.airspeed_m_per_s;
     FlightSummary facts;
-    facts.start_clock_s = start_clock_s(flight);
+    facts.start_clock_s = flight::start_clock_s(data.start_clock_s, flight.name);
     facts.date = date_of(facts.start_clock_s);
     facts.distance_m = 0.0;
     if (!airspeed.empty()) facts.air_distance_m = 0.0;

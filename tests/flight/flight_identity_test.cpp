@@ -32,6 +32,14 @@ TEST(LogName, IsNoDateWithoutOne) {
         EXPECT_FALSE(start_in_name(name)) << name;
 }
 
+TEST(LogName, CountsWhereTheLogHasNoClock) {
+    const std::string name = "20_07_05__10_26_44";
+    EXPECT_EQ(start_clock_s(1e9, name), 1e9);
+    EXPECT_EQ(start_clock_s(std::nullopt, name), 1593944804.0);
+    EXPECT_EQ(start_clock_s(0.0, name), 1593944804.0);
+    EXPECT_FALSE(start_clock_s(0.0, "survey"));
+}
+
 FlightSeries sample(int number) {
     return read_flight(test::source_dir() / "logs" / ("opterra_synthetic_0" + std::to_string(number) + ".data"));
 }
