@@ -109,10 +109,6 @@ void validate(const SegmentationOptions& options) {
     require(between(options.ground_fraction, 0.0, 0.25), "ground fraction", options.ground_fraction, "0 to 0.25");
     require(between(options.cruise_fraction, 0.25, 1.0), "cruise fraction", options.cruise_fraction, "0.25 to 1");
     require(between(options.flight_height_m, 0.0, 1e4), "flight height", options.flight_height_m, "more than 0 m");
-    const double idle_percent = options.idle_throttle_percent;
-    require(idle_percent >= 0.0 && idle_percent <= 100.0, "idle throttle", idle_percent, "0 to 100 %");
-    require(options.rest_s >= 1.0, "rest", options.rest_s, "1 s or more");
-    require(options.hold_s > 0.0, "hold", options.hold_s, "more than 0 s");
 }
 
 FlightPhases segment(const FlightData& data, const SegmentationOptions& options) {

@@ -7,7 +7,8 @@
 
 namespace flightwatt::flight {
 
-/// Checks the options. Throws UsageError for thresholds outside of their range.
+/// Checks the fractions and the height; the other options have their limits where they are set. Throws UsageError for
+/// thresholds outside of their range.
 void validate(const SegmentationOptions& options);
 
 /// Finds all sorties and their phases by altitude and throttle. A sortie is between two rests; lift-off is where the
