@@ -1,5 +1,6 @@
 // flightwatt report: a batch's folder and missions to one HTML page, and to figures for papers.
 
+#include "base/parallel.h"
 #include "base/text.h"
 #include "cli/output/mission_output.h"
 #include "cli/output/stage_options.h"
@@ -9,7 +10,6 @@
 #include "report/figure_files.h"
 #include "report/outline.h"
 #include "report/page.h"
-#include "report/progress.h"
 #include "report/report.h"
 #include "stages.h"
 
@@ -107,7 +107,7 @@ std::string command_of(const cli::StageCall& call, const ReportArguments& argume
 
 report::ReportLog log_of(const cli::StageCall& call) {
     return {[&](const std::string& text) { cli::warn(call, text); },
-            [](const std::string& unit) -> report::Progress {
+            [](const std::string& unit) -> Progress {
                 const auto bar = std::make_shared<cli::ProgressBar>(unit);
                 return [bar](std::size_t done, std::size_t all) { bar->show(done, all); };
             }};

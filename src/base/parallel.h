@@ -14,6 +14,9 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
 /// From now on a loop with max_threads = 0 has so many threads at most; 0: as many as there are cores.
 void limit_threads(std::size_t max_threads);
 
+/// Receives the progress of long work, from any thread.
+using Progress = std::function<void(std::size_t done, std::size_t all)>;
+
 /// The most threads that a loop of `count` has: `max_threads`, or as many as it has cores to use (0).
 std::size_t threads_for(std::size_t count, std::size_t max_threads = 0);
 

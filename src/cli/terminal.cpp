@@ -130,7 +130,7 @@ void ProgressBar::erase() {
     drawn_width_ = 0;
 }
 
-std::function<void(std::size_t, std::size_t)> ProgressBar::callback() {
+Progress ProgressBar::callback() {
     return [this](std::size_t done, std::size_t all) { show(done, all); };
 }
 

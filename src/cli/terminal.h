@@ -1,10 +1,11 @@
 #pragma once
 
+#include "base/parallel.h"
+
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <deque>
-#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -49,7 +50,7 @@ class ProgressBar {
     void show(std::size_t done, std::size_t all);
     void hide();  ///< until show(), so that other text can be printed
     /// show(), for what takes a function; not longer than this lives.
-    std::function<void(std::size_t done, std::size_t all)> callback();
+    Progress callback();
 
   private:
     using Clock = std::chrono::steady_clock;

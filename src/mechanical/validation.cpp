@@ -303,8 +303,7 @@ void require_distinct(std::span<const MeasuredFlight> flights) {
 }
 
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
-                                           const std::function<void(std::size_t, std::size_t)>& progress,
-                                           std::size_t max_folds) {
+                                           const Progress& progress, std::size_t max_folds) {
     if (flights.size() < 2) {
         throw NoResultError(fmt::format("{} flight{}: cross-validation needs 2 or more, and 3 for an interval",
                                         flights.size(), flights.size() == 1 ? "" : "s"));
@@ -435,7 +434,7 @@ std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flight
 }
 
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
-                    const std::function<void(std::size_t, std::size_t)>& progress) {
+                    const Progress& progress) {
     std::vector<ValidatedFlight> validated;
     try {
         if (flights.size() > 1) validated = leave_one_out(validated_flights(flights), options, progress);

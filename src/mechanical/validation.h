@@ -1,10 +1,10 @@
 #pragma once
 
+#include "base/parallel.h"
 #include "mechanical/measured_flight.h"
 #include "mechanical/model_fit.h"
 #include "mechanical/prediction.h"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,8 +42,7 @@ void require_distinct(std::span<const MeasuredFlight> flights);
 /// `progress` gets the numbers of done and of all folds, from one thread at a time. Throws NoResultError for fewer than
 /// 2 flights, and as fit_phase_model.
 std::vector<ValidatedFlight> leave_one_out(std::span<const MeasuredFlight> flights, const ModelFitOptions& options = {},
-                                           const std::function<void(std::size_t, std::size_t)>& progress = {},
-                                           std::size_t max_folds = max_validation_folds);
+                                           const Progress& progress = {}, std::size_t max_folds = max_validation_folds);
 
 /// Errors of one model over the flights, in one phase or in the whole.
 struct ModelScore {
@@ -93,7 +92,7 @@ std::vector<MeasuredFlight> validated_flights(std::span<const MeasuredFlight> fl
 /// plain flights as well. Of more than max_validation_folds flights that many are validated, evenly from all. A single
 /// flight, or folds that cannot be fitted, have no validation.
 void add_best_power(MechanicalModel& model, std::span<const MeasuredFlight> flights, const ModelFitOptions& options,
-                    const std::function<void(std::size_t, std::size_t)>& progress = {});
+                    const Progress& progress = {});
 
 /// The models that predicted anything, in the order in which they are shown.
 std::vector<std::string> model_names(std::span<const ValidatedFlight> flights);

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "base/parallel.h"
 #include "mechanical/validation.h"
 #include "mission/mission.h"
 #include "mission/mission_summary.h"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,7 +70,7 @@ struct ReplayOptions {
     mechanical::ModelFitOptions fit;                        ///< of the model of the other flights
     std::optional<mechanical::MechanicalModel> model = {};  ///< instead of that
     /// Receives the numbers of replays that are done and of all, from one thread at a time.
-    std::function<void(std::size_t done, std::size_t all)> progress = {};
+    Progress progress = {};
 };
 
 struct Replays {

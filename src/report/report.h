@@ -1,12 +1,12 @@
 #pragma once
 
+#include "base/parallel.h"
 #include "mechanical/mechanical_model.h"
 #include "mission/packs.h"
 #include "record/record.h"
 #include "report/batch_content.h"
 #include "report/latex_tables.h"
 #include "report/outline.h"
-#include "report/progress.h"
 
 #include <cstddef>
 #include <filesystem>

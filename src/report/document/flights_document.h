@@ -1,8 +1,8 @@
 #pragma once
 
+#include "base/parallel.h"
 #include "report/batch_content.h"
 #include "report/document/battery_document.h"
-#include "report/progress.h"
 
 #include <span>
 #include <string>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "base/parallel.h"
 #include "mission/feasibility_limits.h"
 #include "mission/simulation.h"
 #include "record/record.h"
-#include "report/progress.h"
 
 #include <cstddef>
 #include <optional>
