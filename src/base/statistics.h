@@ -14,6 +14,7 @@ inline constexpr double confidence_level = 0.95;
 struct Interval {
     double low = 0.0;
     double high = 0.0;
+    bool contains(double value) const { return low <= value && value <= high; }
     bool operator==(const Interval&) const = default;
 };
 

@@ -369,9 +369,9 @@ ModelDeviation model_deviation(const Prediction& prediction, const PredictionInp
     const auto interval = interval_95(expected);
     if (!interval) return {};
     const double measured_wh = prediction.flown.cruise_energy_wh;
-    return {std::abs(measured_wh - expected.energy_wh) / (interval->high_wh - expected.energy_wh),
+    return {std::abs(measured_wh - expected.energy_wh) / (interval->high - expected.energy_wh),
             fmt::format("the cruise so far took {:.3f} Wh; 95 of 100 flights of the model take {:.3f} to {:.3f} Wh",
-                        measured_wh, interval->low_wh, interval->high_wh)};
+                        measured_wh, interval->low, interval->high)};
 }
 
 InitialCharge initial_charge(const PredictionInput& input, const battery::DischargeRecord& flown) {
@@ -457,7 +457,7 @@ std::vector<ConstantLoad> remaining_power(const Prediction& prediction, double f
 
 double high_energy_factor(const Prediction& prediction) {
     const double expected_wh = prediction.remaining_energy.energy_wh;
-    return expected_wh > 0.0 ? prediction.interval.high_wh / expected_wh : 1.0;
+    return expected_wh > 0.0 ? prediction.interval.high / expected_wh : 1.0;
 }
 
 battery::BatteryState state_for(const BatteryNow& now, double nominal_ah, double capacity_ah, double more_percent) {

@@ -77,7 +77,7 @@ struct Prediction {
     double landing_s = 0.0;
     double landing_sd_s = 0.0;  ///< standard deviation of `landing_s`; 0 if that is stated
     mechanical::EnergyEstimate remaining_energy;
-    mechanical::EnergyInterval interval;
+    Interval interval;  ///< of it [Wh]
     std::optional<BatteryPrediction> battery = {};
 };
 

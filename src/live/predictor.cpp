@@ -115,8 +115,8 @@ LandingPrediction landing_of(const LiveState& state) {
     LandingPrediction landing{of.remaining_s,
                               of.landing_s,
                               of.remaining_energy.energy_wh,
-                              of.interval.low_wh,
-                              of.interval.high_wh,
+                              of.interval.low,
+                              of.interval.high,
                               of.flown.energy_wh + of.remaining_energy.energy_wh,
                               state.expected_power_w.value_or(0.0)};
     if (of.battery) {

@@ -171,7 +171,7 @@ void list_validation(TomlFields& fields, ModelValidation& validation) {
     fields.tables("scores", validation.scores, list_score, "");
 }
 
-void list_range(TomlFields& fields, FlownRange& range) {
+void list_range(TomlFields& fields, Interval& range) {
     fields.real("low", range.low);
     fields.real("high", range.high, at_least(range.low));
 }
@@ -248,7 +248,7 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
     fields.optional_real("airspeed_sd_m_per_s", model.airspeed_sd_m_per_s, at_least(0.0));
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
-    fields.optional_table("payload_kg", model.payload_kg, [&](TomlFields& payload, FlownRange& range) {
+    fields.optional_table("payload_kg", model.payload_kg, [&](TomlFields& payload, Interval& range) {
         payload.real("mean", model.load.payload_kg, at_least(0.0));
         list_range(payload, range);
     });

@@ -66,7 +66,7 @@ TermValues typical_values(std::span<const BinnedFlight> flights) {
     return mean_values(bins);
 }
 
-void add_value(FlownRange& range, double value, bool first) {
+void add_value(Interval& range, double value, bool first) {
     range.low = first ? value : std::min(range.low, value);
     range.high = first ? value : std::max(range.high, value);
 }

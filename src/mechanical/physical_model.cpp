@@ -17,8 +17,6 @@ constexpr std::array<std::string_view, power_term_count> power_term_names{
 constexpr std::array<std::string_view, power_term_count> power_term_units{
     "W s^3/m^3", "W m/s", "W m/s", "W s/m", "W s/m", "W", "W/W", "W s^2/m^2", "W/kg"};
 
-bool is_within(const FlownRange& range, double value) { return range.low <= value && value <= range.high; }
-
 }  // namespace
 
 std::string_view to_string(PowerTerm term) { return power_term_names[static_cast<std::size_t>(term)]; }
@@ -167,8 +165,8 @@ bool may_predict_power(const PhysicalModel& model, const FlightState& motion, bo
 }
 
 bool is_within_flown_range(const PhysicalModel& model, const FlightState& motion) {
-    return is_within(model.airspeed_m_per_s, motion.airspeed_m_per_s) &&
-           is_within(model.climb_m_per_s, motion.climb_m_per_s);
+    return model.airspeed_m_per_s.contains(motion.airspeed_m_per_s) &&
+           model.climb_m_per_s.contains(motion.climb_m_per_s);
 }
 
 }  // namespace flightwatt::mechanical

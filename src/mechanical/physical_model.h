@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/statistics.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -77,11 +79,6 @@ double induced_power_w(const AircraftLoad& load, double airspeed_m_per_s);
 /// std::invalid_argument unless airspeed and load factor are at least 0.
 TermValues term_values(const FlightState& motion, const AircraftLoad& load = {});
 
-struct FlownRange {
-    double low = 0.0;
-    double high = 0.0;
-};
-
 /// Coefficients for the speed to fly: of a model's terms with drag and induced drag, also where their fit predicts no
 /// better (docs/methods.md, Speed to fly).
 struct SpeedTerms {
@@ -113,14 +110,14 @@ struct PhysicalModel {
     std::size_t samples = 0;  ///< of power, in the bins
     std::vector<std::string> flights;
 
-    FlownRange airspeed_m_per_s;  ///< of the bins' means
+    Interval airspeed_m_per_s;  ///< of the bins' means
     /// Error of these means (1 sd) in flights without an airspeed sensor; absent if all measured it.
     std::optional<double> airspeed_sd_m_per_s = {};
-    FlownRange climb_m_per_s;
+    Interval climb_m_per_s;
     /// Of which power is predicted; after a fit with the mean payload of its flights.
     AircraftLoad load = {};
-    std::optional<FlownRange> payload_kg = {};  ///< of the flights; absent unless all state theirs
-    double mean_airspeed_m_per_s = 0.0;         ///< of the flights' cruises, each counting the same
+    std::optional<Interval> payload_kg = {};  ///< of the flights; absent unless all state theirs
+    double mean_airspeed_m_per_s = 0.0;       ///< of the flights' cruises, each counting the same
     /// The root of their mean cube, at which drag takes its mean power; absent in files of 0.2.
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
     /// Absent where `terms` contain drag and induced drag or the flights do not determine them, and in older files.

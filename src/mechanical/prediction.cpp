@@ -189,15 +189,15 @@ EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b) {
             a.satterthwaite_sum + b.satterthwaite_sum};
 }
 
-std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate) {
+std::optional<Interval> interval_95(const EnergyEstimate& estimate) {
     if (!estimate.uncertainty_known) return std::nullopt;
     double half_wh = 0.0;
     if (estimate.variance_wh2 > 0.0) {
         const double degrees_of_freedom = estimate.variance_wh2 * estimate.variance_wh2 / estimate.satterthwaite_sum;
         half_wh = student_t_half_width(degrees_of_freedom) * std::sqrt(estimate.variance_wh2);
     }
-    return EnergyInterval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
-                          estimate.energy_wh + half_wh};
+    return Interval{std::max(estimate.energy_wh - half_wh, std::min(estimate.energy_wh, 0.0)),
+                    estimate.energy_wh + half_wh};
 }
 
 WeightedPhase forecast_of(const MechanicalModel& model, flight::Phase phase) {

@@ -27,15 +27,9 @@ void add_variance(EnergyEstimate& estimate, double variance_wh2, double degrees_
 /// Both together, as if they were independent.
 EnergyEstimate sum_of(const EnergyEstimate& a, const EnergyEstimate& b);
 
-struct EnergyInterval {
-    double low_wh = 0.0;
-    double high_wh = 0.0;
-    bool contains(double energy_wh) const { return low_wh <= energy_wh && energy_wh <= high_wh; }
-};
-
-/// 95 % predictive interval: Student's t with Welch and Satterthwaite's degrees of freedom. A low end below 0 becomes
-/// 0: a drone does not regenerate energy. std::nullopt without known uncertainty.
-std::optional<EnergyInterval> interval_95(const EnergyEstimate& estimate);
+/// 95 % predictive interval [Wh]: Student's t with Welch and Satterthwaite's degrees of freedom. A low end below 0
+/// becomes 0: a drone does not regenerate energy. std::nullopt without known uncertainty.
+std::optional<Interval> interval_95(const EnergyEstimate& estimate);
 
 /// A phase of the model as a prediction needs it.
 struct WeightedPhase {

@@ -155,10 +155,9 @@ std::optional<SpeedToFly> speed_to_fly(const PhysicalModel& of, double headwind_
     return speeds;
 }
 
-std::string describe(const BestSpeed& best, const FlownRange& flown) {
+std::string describe(const BestSpeed& best, const Interval& flown) {
     const auto speed = [&](double airspeed) {
-        const bool is_flown = flown.low <= airspeed && airspeed <= flown.high;
-        return fmt::format("{:.1f}{}", airspeed, is_flown ? "" : "*");
+        return fmt::format("{:.1f}{}", airspeed, flown.contains(airspeed) ? "" : "*");
     };
     const auto& low = best.low_m_per_s;
     const auto& high = best.high_m_per_s;

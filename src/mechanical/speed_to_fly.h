@@ -52,7 +52,7 @@ BestSpeed best_speed(const PhysicalModel& model, const std::string& purpose, con
 std::optional<SpeedToFly> speed_to_fly(const PhysicalModel& model, double headwind_m_per_s = 0.0);
 
 /// "12.1 m/s (95 %: 11.0 to 13.2 m/s), 38.1 W"; '*' marks speeds outside of the flown range.
-std::string describe(const BestSpeed& best, const FlownRange& flown_m_per_s);
+std::string describe(const BestSpeed& best, const Interval& flown_m_per_s);
 
 /// The flight to fly, with the intervals before and after.
 std::string describe(const SpeedTest& test);

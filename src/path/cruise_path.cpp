@@ -47,9 +47,7 @@ PiecewisePower power_pieces(const mechanical::PhysicalModel& model, const PathTr
 }
 
 /// "12.1 to 14.9 m/s".
-std::string range_text(const mechanical::FlownRange& range) {
-    return fmt::format("{:.4g} to {:.4g} m/s", range.low, range.high);
-}
+std::string range_text(const Interval& range) { return fmt::format("{:.4g} to {:.4g} m/s", range.low, range.high); }
 
 }  // namespace
 

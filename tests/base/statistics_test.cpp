@@ -15,6 +15,12 @@ TEST(Statistics, MomentsOfASample) {
     EXPECT_DOUBLE_EQ(sample_sd(values) * sample_sd(values), 32.0 / 7.0);
 }
 
+TEST(Statistics, AnIntervalContainsItsEnds) {
+    const Interval interval{1.0, 2.0};
+    for (const double inside : {1.0, 1.5, 2.0}) EXPECT_TRUE(interval.contains(inside));
+    for (const double outside : {0.9, 2.1}) EXPECT_FALSE(interval.contains(outside));
+}
+
 TEST(Statistics, TheMedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
     EXPECT_EQ(median({3.0}), 3.0);
     EXPECT_EQ(median({5.0, 1.0, 3.0}), 3.0);

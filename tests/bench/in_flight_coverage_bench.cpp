@@ -40,7 +40,7 @@ void add(Row& row, double measured_wh, const mechanical::EnergyEstimate& before,
     const auto interval = interval_95(estimate).value();
     row.covered += interval.contains(measured_wh) ? 1.0 : 0.0;
     row.covered_before += interval_95(before).value().contains(measured_wh) ? 1.0 : 0.0;
-    row.half_width_wh += 0.5 * (interval.high_wh - interval.low_wh);
+    row.half_width_wh += 0.5 * (interval.high - interval.low);
     row.error_wh += std::abs(estimate.energy_wh - measured_wh);
     row.before_wh += std::abs(before.energy_wh - measured_wh);
     ++row.flights;

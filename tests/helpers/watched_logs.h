@@ -67,8 +67,8 @@ inline void expect_same(const live::Prediction& watched, const live::Prediction&
     EXPECT_EQ(watched.flown.cruise_start_s, expected.flown.cruise_start_s);
     EXPECT_EQ(watched.flown.energy_wh, expected.flown.energy_wh);
     EXPECT_EQ(watched.remaining_energy.energy_wh, expected.remaining_energy.energy_wh);
-    EXPECT_EQ(watched.interval.low_wh, expected.interval.low_wh);
-    EXPECT_EQ(watched.interval.high_wh, expected.interval.high_wh);
+    EXPECT_EQ(watched.interval.low, expected.interval.low);
+    EXPECT_EQ(watched.interval.high, expected.interval.high);
     ASSERT_EQ(watched.battery.has_value(), expected.battery.has_value());
     if (!watched.battery) return;
     EXPECT_EQ(watched.battery->expected.soc_now_percent, expected.battery->expected.soc_now_percent);

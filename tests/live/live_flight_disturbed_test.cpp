@@ -31,9 +31,7 @@ TEST(DisturbedLiveFlight, AStartInMidFlightPredictsWithWhatIsKnown) {
     EXPECT_TRUE(state.began_in_air);
     EXPECT_FALSE(state.lift_off_s);
     ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
-    const auto width = [](const LiveState& of) {
-        return of.prediction->interval.high_wh - of.prediction->interval.low_wh;
-    };
+    const auto width = [](const LiveState& of) { return of.prediction->interval.high - of.prediction->interval.low; };
     EXPECT_TRUE(state.prediction->interval.contains(whole.prediction->remaining_energy.energy_wh));
     EXPECT_GT(width(state), 0.8 * width(whole)) << "the time that is left is reported";
     EXPECT_FALSE(state.battery->soc_percent) << "its charge at the start is not known";
@@ -62,8 +60,8 @@ TEST(DisturbedLiveFlight, AStartInMidFlightDoesNotKnowHowFarTheMissionIs) {
     EXPECT_NEAR(state.prediction->remaining_s, 200.0, 1.0) << "half of 600 less the 200 that were seen";
     const double power_w = state.prediction->cruise.remaining_mean_w;
     const double landing_wh = state.prediction->landing.energy_wh;
-    EXPECT_LE(state.prediction->interval.low_wh, landing_wh);
-    EXPECT_GE(state.prediction->interval.high_wh, landing_wh + power_w * 400.0 / 3600.0);
+    EXPECT_LE(state.prediction->interval.low, landing_wh);
+    EXPECT_GE(state.prediction->interval.high, landing_wh + power_w * 400.0 / 3600.0);
     EXPECT_THAT(state.warnings, testing::Contains(testing::HasSubstr("s of the mission's cruise may remain")));
     const auto climbing = state_from(75.0);
     ASSERT_TRUE(climbing.prediction) << climbing.no_prediction_reason;

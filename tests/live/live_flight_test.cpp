@@ -234,12 +234,12 @@ TEST(LiveFlight, KnowsPhasesAndSaysWhatItWaitsFor) {
     EXPECT_EQ(state.phase, Phase::takeoff);
     ASSERT_TRUE(state.prediction) << state.no_prediction_reason;
     test::expect_same(*state.prediction, test::predicted(log, state.prediction->flown.until_s, test::wing_basis()));
-    const double early_wh = state.prediction->interval.high_wh - state.prediction->interval.low_wh;
+    const double early_wh = state.prediction->interval.high - state.prediction->interval.low;
     state = state_at(85.001, 300.0);
     EXPECT_EQ(state.phase, Phase::cruise);
     EXPECT_NEAR(state.flight_time_s, 235.5, 2.0);
     EXPECT_TRUE(state.no_prediction_reason.empty());
-    EXPECT_LT(state.prediction->interval.high_wh - state.prediction->interval.low_wh, early_wh);
+    EXPECT_LT(state.prediction->interval.high - state.prediction->interval.low, early_wh);
     state = state_at(300.001, 1000.0);
     EXPECT_TRUE(state.landed);
     EXPECT_FALSE(state.phase);

@@ -241,8 +241,7 @@ TEST(Durations, BeginWithTheRestOfATakeoff) {
     EXPECT_EQ(over.takeoff_s, 0.0);
     EXPECT_EQ(over.remaining_s, 300.0);
     const auto cruising = predict_energy(input, after(25.0, 100.0), {}, remarks);
-    EXPECT_GT(climbing.interval.high_wh - climbing.interval.low_wh,
-              cruising.interval.high_wh - cruising.interval.low_wh);
+    EXPECT_GT(climbing.interval.high - climbing.interval.low, cruising.interval.high - cruising.interval.low);
 }
 
 using path::FlightPath;

@@ -80,8 +80,8 @@ void expect_same(const PredictorState& outlook, const LiveState& state) {
     EXPECT_EQ(outlook.phase, FlightPhase::cruise);
     EXPECT_EQ(outlook.energy_wh, state.energy_wh);
     EXPECT_EQ(landing.energy_wh, state.prediction->remaining_energy.energy_wh);
-    EXPECT_EQ(landing.energy_low_wh, state.prediction->interval.low_wh);
-    EXPECT_EQ(landing.energy_high_wh, state.prediction->interval.high_wh);
+    EXPECT_EQ(landing.energy_low_wh, state.prediction->interval.low);
+    EXPECT_EQ(landing.energy_high_wh, state.prediction->interval.high);
     EXPECT_EQ(landing.soc_percent, state.prediction->battery->expected.soc_percent);
     EXPECT_EQ(landing.worst_soc_percent, state.prediction->battery->worst.soc_percent);
     EXPECT_EQ(landing.chance_below_reserve, state.battery->probability_below_reserve);

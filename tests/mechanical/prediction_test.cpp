@@ -83,7 +83,7 @@ TEST(Prediction, BeforeTheFlightIsTheStretchedCurvesEnergyWithStudentsInterval) 
     const auto estimate = predict_before_flight(cruise, 1200.0);
     EXPECT_NEAR(estimate.energy_wh, 2.0 * units::wh_from_joule(energy_j(cruise.model.fourier, 600.0)), 1e-9);
     const double half_wh = student_t_half_width(3.0) * 2.0 * std::sqrt(1.25) * 1200.0 / 3600.0;
-    EXPECT_NEAR(interval_95(estimate).value().high_wh, estimate.energy_wh + half_wh, 1e-9);
+    EXPECT_NEAR(interval_95(estimate).value().high, estimate.energy_wh + half_wh, 1e-9);
 }
 
 TEST(Prediction, BeforeFlightOfTheRestMissesOnlyTheFlownPart) {
@@ -136,8 +136,8 @@ TEST(Prediction, IntervalNarrowsAsTheFlightGoesOn) {
     for (const double seconds : {10.0, 100.0, 300.0, 600.0, 890.0}) {
         const auto rest = rest_of(cruise, seconds, 30.0, 900.0 - seconds);
         const auto interval = interval_95(rest.energy).value();
-        EXPECT_LT(interval.high_wh - interval.low_wh, last_wh) << seconds;
-        last_wh = interval.high_wh - interval.low_wh;
+        EXPECT_LT(interval.high - interval.low, last_wh) << seconds;
+        last_wh = interval.high - interval.low;
     }
 }
 
@@ -242,8 +242,8 @@ EnergyEstimate estimate(double energy_wh, double variance_wh2, double degrees_of
 
 TEST(EnergyEstimate, HasAnIntervalOfItsOneShare) {
     const auto interval = interval_95(estimate(10.0, 4.0, 5.0)).value();
-    EXPECT_NEAR(interval.low_wh, 10.0 - 2.0 * 2.5706, 1e-3);
-    EXPECT_NEAR(interval.high_wh, 10.0 + 2.0 * 2.5706, 1e-3);
+    EXPECT_NEAR(interval.low, 10.0 - 2.0 * 2.5706, 1e-3);
+    EXPECT_NEAR(interval.high, 10.0 + 2.0 * 2.5706, 1e-3);
     EXPECT_TRUE(interval.contains(5.0));
     EXPECT_FALSE(interval.contains(15.2));
 }
@@ -252,7 +252,7 @@ TEST(EnergyEstimate, HasAnIntervalOfItsOneShare) {
 TEST(EnergyEstimate, AddsVariancesAndDegreesOfFreedom) {
     const auto sum = sum_of(estimate(10.0, 2.0, 3.0), estimate(20.0, 2.0, 3.0));
     EXPECT_DOUBLE_EQ(sum.energy_wh, 30.0);
-    EXPECT_NEAR(interval_95(sum).value().high_wh, 30.0 + 2.0 * student_t_half_width(6.0), 1e-9);
+    EXPECT_NEAR(interval_95(sum).value().high, 30.0 + 2.0 * student_t_half_width(6.0), 1e-9);
 }
 
 TEST(EnergyEstimate, WithoutKnownUncertaintyHasNoIntervalNorHasASum) {
@@ -263,8 +263,8 @@ TEST(EnergyEstimate, WithoutKnownUncertaintyHasNoIntervalNorHasASum) {
 
 TEST(EnergyEstimate, CannotFallBelowNothing) {
     const auto interval = interval_95(estimate(1.0, 100.0, 2.0)).value();
-    EXPECT_DOUBLE_EQ(interval.low_wh, 0.0);
-    EXPECT_GT(interval.high_wh, 40.0);
+    EXPECT_DOUBLE_EQ(interval.low, 0.0);
+    EXPECT_GT(interval.high, 40.0);
 }
 
 }  // namespace

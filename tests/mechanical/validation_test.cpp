@@ -133,7 +133,7 @@ std::vector<double> errors_in_half_widths(const std::string& model, double until
         for (const auto& flight : leave_one_out(generated(5, seed, until_s))) {
             const auto prediction = predicted_energy(flight, model, flight::Phase::cruise).value();
             const auto interval = interval_95(prediction.estimate).value();
-            const double half_width_wh = 0.5 * (interval.high_wh - interval.low_wh);
+            const double half_width_wh = 0.5 * (interval.high - interval.low);
             errors.push_back(std::abs(prediction.estimate.energy_wh - prediction.measured_wh) / half_width_wh);
         }
     }

@@ -139,7 +139,6 @@ namespace flightwatt::mechanical {
 Fields<PhysicalFit> record_fields(const PhysicalFit*) {
     using R = PhysicalFit;
     using M = PhysicalModel;
-    const auto range = [](const FlownRange& of) { return Interval{of.low, of.high}; };
     return {field("terms", at(&R::model, cli::term_outputs), "terms of the model"),
             field("level_sd", at(&R::model, &M::level_sd), "relative sd between flights; null: a single flight"),
             field("degrees_of_freedom", at(&R::model, &M::degrees_of_freedom), "of the intervals"),
@@ -149,10 +148,10 @@ Fields<PhysicalFit> record_fields(const PhysicalFit*) {
             field("bins", at(&R::model, &M::bins), "number of bins"),
             field("bin_s", at(&R::model, &M::bin_s), "mean duration of a bin"),
             field("samples", at(&R::model, &M::samples), "power samples"),
-            field("airspeed_m_per_s", at(&R::model, &M::airspeed_m_per_s, range), "range of the airspeed"),
+            field("airspeed_m_per_s", at(&R::model, &M::airspeed_m_per_s), "range of the airspeed"),
             field("airspeed_sd_m_per_s", at(&R::model, &M::airspeed_sd_m_per_s),
                   "error of an estimated airspeed; null: measured"),
-            field("climb_m_per_s", at(&R::model, &M::climb_m_per_s, range), "range of the climb rate"),
+            field("climb_m_per_s", at(&R::model, &M::climb_m_per_s), "range of the climb rate"),
             field("mean_airspeed_m_per_s", at(&R::model, &M::mean_airspeed_m_per_s), "mean airspeed"),
             field("hold_out", cli::error_basis, "`mean power of phases`, or `bins` of a single flight"),
             field("trials", &R::trials, "terms that were tried"),

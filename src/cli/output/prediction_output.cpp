@@ -155,7 +155,7 @@ std::string text_of(const Prediction& of) {
                duration_text(flown.until_s - flown.lift_off_s), takeoff_text, cruise_text, landing.energy_wh,
                duration_text(of.landing_s),
                of.landing_sd_s > 0.0 ? fmt::format(" (1 sd: {})", duration_text(of.landing_sd_s)) : "", rest.energy_wh,
-               of.interval.low_wh, of.interval.high_wh, flown.energy_wh + rest.energy_wh) +
+               of.interval.low, of.interval.high, flown.energy_wh + rest.energy_wh) +
            battery_text(of.battery);
 }
 
@@ -182,7 +182,7 @@ TextTable flights_table(const std::vector<mechanical::ValidatedFlight>& flights)
                      fmt::format("{:+.3f}", error_wh),
                      part == flight::Phase::landing ? "-"
                                                     : fmt::format("{:+.1f}", units::percentage(error_wh, measured_wh)),
-                     interval ? fixed(interval->low_wh, 3) : "-", interval ? fixed(interval->high_wh, 3) : "-"});
+                     interval ? fixed(interval->low, 3) : "-", interval ? fixed(interval->high, 3) : "-"});
             }
         }
     }
@@ -254,7 +254,6 @@ Fields<Prediction> record_fields(const Prediction*) {
     const auto expected_w = [=](const R& r) {
         return is_expected(r) ? std::optional(r.cruise.expected_w) : std::nullopt;
     };
-    const auto interval = [](const R& r) { return Interval{r.interval.low_wh, r.interval.high_wh}; };
     const auto lift_off_s = [](const R& r) {
         return r.began_in_air ? std::nullopt : std::optional(r.flown.lift_off_s);
     };
@@ -266,7 +265,7 @@ Fields<Prediction> record_fields(const Prediction*) {
     return {
         field("flown_energy_wh", at(&R::flown, &Flown::energy_wh), "measured so far"),
         field("remaining_energy_wh", at(&R::remaining_energy, &Energy::energy_wh), "predicted"),
-        field("remaining_energy_wh_interval_95", interval, "its prediction interval"),
+        field("remaining_energy_wh_interval_95", &R::interval, "its prediction interval"),
         field("total_energy_wh", total, "measured and predicted"),
         field("lift_off_s", lift_off_s, "in the log's time; null: the record begins in the air"),
         field("until_s", at(&R::flown, &Flown::until_s), "time of the prediction, in the log's time"),

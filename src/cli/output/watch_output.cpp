@@ -89,8 +89,8 @@ std::string landing_line(const live::LiveState& state) {
     if (!state.prediction) return "no prediction: " + state.no_prediction_reason;
     const auto& prediction = *state.prediction;
     auto text = fmt::format("{:.2f} Wh {} ({:.2f} to {:.2f})", prediction.remaining_energy.energy_wh,
-                            prediction.overtime_s ? "if it lands now" : "to the landing", prediction.interval.low_wh,
-                            prediction.interval.high_wh);
+                            prediction.overtime_s ? "if it lands now" : "to the landing", prediction.interval.low,
+                            prediction.interval.high);
     if (!prediction.battery) return text;
     const auto& expected = prediction.battery->expected;
     const auto& worst = prediction.battery->worst;

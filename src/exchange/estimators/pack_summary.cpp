@@ -58,8 +58,7 @@ double cruise_current_a(const EstimatorInput& input, const PackSummary& pack) {
     return internal_current_a(pack.battery, mean_power_w(input, flight::Phase::cruise), {half_charged_percent, 0.0});
 }
 
-CurveFit fit_polynomial(const mechanical::FlownRange& range, int points, int order,
-                        const std::function<double(double)>& curve) {
+CurveFit fit_polynomial(const Interval& range, int points, int order, const std::function<double(double)>& curve) {
     Eigen::MatrixXd powers(points, order + 1);
     Eigen::VectorXd values(points);
     for (int i = 0; i < points; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/statistics.h"
 #include "exchange/autopilot_parameters.h"
 
 #include <functional>
@@ -45,8 +46,7 @@ struct CurveFit {
     double max_error = 0.0;        ///< largest deviation at the fitted points
 };
 /// Fits a polynomial of an order to a curve at `points` equal steps of a range.
-CurveFit fit_polynomial(const mechanical::FlownRange& range, int points, int order,
-                        const std::function<double(double)>& curve);
+CurveFit fit_polynomial(const Interval& range, int points, int order, const std::function<double(double)>& curve);
 
 /// The open-circuit voltage as a line over the state of charge.
 struct VoltageLine {

@@ -33,12 +33,12 @@ FlightState usual_motion(const PhysicalModel& model) {
 }
 
 void note_payload_range(double payload_kg, const PhysicalModel& model, MissionSetup& mission) {
-    const auto [low, high] = model.payload_kg.value_or(FlownRange{});
-    if (payload_kg >= low && payload_kg <= high) return;
+    const auto flown = model.payload_kg.value_or(Interval{});
+    if (flown.contains(payload_kg)) return;
     mission.notes.push_back(
         fmt::format("payload_kg = {} is beyond that of the model's flights ({:.4g} to {:.4g} kg): its power is "
                     "extrapolated",
-                    payload_kg, low, high));
+                    payload_kg, flown.low, flown.high));
 }
 
 /// Sets the payload of which the model predicts power. What a payload adds in proportion (W/kg) is, of a rotorcraft, the

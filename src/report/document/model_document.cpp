@@ -114,7 +114,7 @@ Json bins_json(const mechanical::PhysicalModel& model, std::span<const mechanica
 }
 
 /// Level flight between two airspeeds, with the 95 % band where it is known.
-Json level_json(const mechanical::PhysicalModel& model, const mechanical::FlownRange& range, bool flown) {
+Json level_json(const mechanical::PhysicalModel& model, const Interval& range, bool flown) {
     constexpr int steps = 40;
     std::vector<double> airspeeds;
     std::vector<double> power_w;
@@ -140,7 +140,7 @@ Json level_json(const mechanical::PhysicalModel& model, const mechanical::FlownR
 }
 
 /// The best speeds; what is beyond the drawn airspeeds ends there.
-Json best_json(const mechanical::SpeedToFly& speeds, const mechanical::FlownRange& drawn) {
+Json best_json(const mechanical::SpeedToFly& speeds, const Interval& drawn) {
     auto all = Json::array();
     const auto inside = [&](double airspeed) { return std::clamp(airspeed, drawn.low, drawn.high); };
     for (const auto& best : speeds.best) {
@@ -211,7 +211,7 @@ Json physical_json(std::span<const mechanical::MeasuredFlight> flights, LatexTab
     tables.add({cli::trials_table(fit), "Terms that were tried, with their hold-out error", "tab:physical-terms"});
     constexpr double slower = 0.75;  // of the slowest airspeed flown
     const auto& flown = fit.model.airspeed_m_per_s;
-    const mechanical::FlownRange drawn{fit.speeds ? slower * flown.low : flown.low, flown.high};
+    const Interval drawn{fit.speeds ? slower * flown.low : flown.low, flown.high};
     const auto& model = fit.speeds ? fit.speeds->model : fit.model;
     auto level = Json::array({level_json(model, flown, true)});
     if (fit.speeds) level.push_back(level_json(model, {drawn.low, flown.low}, false));
