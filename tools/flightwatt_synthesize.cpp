@@ -242,8 +242,7 @@ synthetic. The same seed gives the same files.)"};
     options.add("truth", arguments.with_truth, "write the true phases next to each log, as NAME.truth.csv");
     options.add_choice(
         "anomaly", arguments.anomalies, anomalies, {.value = "NAME", .old_name = "hazard"},
-        "an event of real logs that must not mislead the segmentation: estimator-starts-at-zero, "
-        "dives-in-cruise, run-up, power-burst-after-landing, throttle-burst-before-touchdown, two-sorties, "
-        "begins-in-the-air, ends-in-the-air, landing-in-steps, works-low, or all, a log each");
+        fmt::format("an event of real logs that must not mislead the segmentation: {}, or all, a log each",
+                    fmt::join(synthetic::anomaly_names(), ", ")));
     return cli::run_stage(argc, argv, stage, [&](const auto& call) { return synthesize(call, arguments); });
 }
