@@ -24,7 +24,8 @@ namespace {
 
 constexpr double week_s = 604'800.0;
 constexpr double restart_s = 60.0;
-constexpr double late_s = 2.0;
+constexpr double late_s = 2.0;       // more than rows that wait for others in a logger's buffer
+constexpr double step_late_s = 0.5;  // of rows between those of the same message that lack none
 constexpr std::size_t enough_late_rows = 10;
 constexpr std::size_t few_late_rows = 3;
 constexpr double hole_intervals = 1.5;
@@ -105,7 +106,7 @@ ClockStep largest_step(const telemetry::MessageTable& table) {
         const double time_s = times_s[row];
         const double latest_s = seen.empty() ? time_s : seen.rbegin()->first;
         is_behind = is_behind && time_s >= times_s[row - 1] && time_s <= step.from_s;
-        if (!is_behind && latest_s - time_s > late_s) step = {latest_s, time_s, 0}, is_behind = true;
+        if (!is_behind && latest_s - time_s > step_late_s) step = {latest_s, time_s, 0}, is_behind = true;
         const auto above = seen.lower_bound(time_s);
         if (is_behind && above->first == time_s)
             step.rows += differ(table, row, above->second) ? 1 : 0;
@@ -301,7 +302,7 @@ std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLo
     ClockStep largest;
     std::size_t rows = 0;
     for (const auto& table : sender.tables) {
-        if (!may_overlap(table) || !has_late_rows(table, late_s)) continue;
+        if (!may_overlap(table) || !has_late_rows(table, step_late_s)) continue;
         const auto step = largest_step(table);
         rows += step.rows;
         if (step.rows > largest.rows) largest = step;
