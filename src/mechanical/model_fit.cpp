@@ -54,6 +54,13 @@ std::vector<double> even_fractions(std::size_t points) {
     return fractions;
 }
 
+/// The interval of a power; of one that is not below 0, without what is below 0.
+Interval power_interval_w(double power_w, double error_w, double degrees_of_freedom) {
+    auto interval = student_t_interval(power_w, error_w, degrees_of_freedom);
+    if (power_w >= 0.0 && std::isfinite(interval.low)) interval.low = std::max(interval.low, 0.0);
+    return interval;
+}
+
 /// The bands of one phase at `points` fractions of it.
 CurveBand band_of(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis& analysis, std::size_t points) {
     const auto& model = fit.model.phases[phase];
@@ -61,8 +68,8 @@ CurveBand band_of(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis&
     for (const double tau : even_fractions(points)) {
         band.time_s.push_back(tau * model.duration_s);
         const auto [low, high] =
-            student_t_interval(power_w(model.fourier, band.time_s.back()), curve_standard_error_w(analysis, tau),
-                               analysis.errors.degrees_of_freedom);
+            power_interval_w(power_w(model.fourier, band.time_s.back()), curve_standard_error_w(analysis, tau),
+                             analysis.errors.degrees_of_freedom);
         band.low_95_w.push_back(low);
         band.high_95_w.push_back(high);
     }
@@ -267,7 +274,7 @@ std::string curves_csv(const ModelFit& fit, const flight::PerPhase<ErrorAnalysis
             };
             std::optional<Interval> population;  // the mean of all flights like these, of which these are a sample
             if (const auto sd_w = of_flights(band.flights_sd_w))
-                population = student_t_interval(power, *sd_w / std::sqrt(flights), flights - 1.0);
+                population = power_interval_w(power, *sd_w / std::sqrt(flights), flights - 1.0);
             csv.add(to_string(phase), band.time_s[i] / model.duration_s, band.time_s[i], power,
                     (band.high_95_w[i] - power) / half_width, band.low_95_w[i], band.high_95_w[i],
                     of_flights(band.flights_low_w), of_flights(band.flights_high_w), of_flights(band.flights_sd_w),

@@ -107,6 +107,21 @@ TEST(ModelErrors, CurvesAreATableOfBothBands) {
     EXPECT_THAT(curves_csv(alone, analyse_model(alone)), HasSubstr(",,,,,\n"));
 }
 
+TEST(ModelErrors, BandsOfPowersThatDifferDoNotReachBelowZero) {
+    auto flights = made_up_flights(2, 0.1);
+    for (const auto phase : flight::all_phases)
+        for (double& power_w : flights[1].phases[phase]->power_w) power_w *= 4.0;
+    auto fit = fit_model(flights);
+    const auto table = parse_csv(curves_csv(fit, analyse_model(fit)), "curves.csv");
+    bool was_cut = false;
+    for (const auto& row : table.rows) {
+        for (const auto* name : {"low_95_w", "flights_low_w", "population_low_95_w"})
+            EXPECT_GE(cell_number(table, row, column_index(table, name)), 0.0) << name;
+        was_cut = was_cut || cell_number(table, row, column_index(table, "population_low_95_w")) == 0.0;
+    }
+    EXPECT_TRUE(was_cut);
+}
+
 TEST(TableOne, CanHaveIntervals) {
     auto model = test::published_model();
     model.phases[flight::Phase::cruise].errors =
