@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
 #include <optional>
