@@ -420,6 +420,9 @@ void decide_power(MechanicalModel& model, std::span<const MeasuredFlight> flight
 
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights, const MechanicalModel& model) {
     remove_rejected(flights);
+    std::erase_if(flights, [](const ValidatedFlight& flight) {
+        return std::ranges::any_of(flight.measured_wh.values, [](const auto& energy_wh) { return !energy_wh; });
+    });
     const auto of_mean = held_out_score(flights, mean_model);
     const auto of_curve = held_out_score(flights, curve_model);
     if (!of_mean || !of_curve) return std::nullopt;

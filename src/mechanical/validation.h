@@ -79,7 +79,7 @@ std::string remove_rejected(std::vector<ValidatedFlight>& flights);
 void decide_power(MechanicalModel& model, std::span<const MeasuredFlight> flights,
                   std::span<const ValidatedFlight> validated);
 
-/// The scores of the models that missions can use, each over the flights that it predicts as a whole, without those
+/// The scores of the models that missions can use, each over the flights whose three phases it predicts, without those
 /// that remove_rejected removes; of a decided model whose phases differ also "by_phase". std::nullopt where curve or
 /// mean power has none.
 std::optional<ModelValidation> validation_of(std::vector<ValidatedFlight> flights, const MechanicalModel& model);

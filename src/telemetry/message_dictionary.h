@@ -31,7 +31,7 @@ std::string_view to_string(LinkVersion version);
 /// Type of a field, or of an array's elements, on the wire: little endian, unaligned.
 enum class WireType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, text };
 
-/// Returns the type of a name in C ("uint8_t", "float", "char"); std::nullopt if it is none.
+/// Returns the type of a name in C ("uint8_t", "float", "char"); std::nullopt for other names.
 std::optional<WireType> wire_type_of(std::string_view name);
 
 /// Kind of a field's number of elements.

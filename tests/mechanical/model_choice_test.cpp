@@ -20,13 +20,13 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// A cruise of 100 Wh with these errors in Wh, and so in percent.
+/// A cruise of 100 Wh, between a take-off and a landing of no energy, with these errors in Wh, and so in percent.
 ValidatedFlight flight_of(const std::vector<std::pair<std::string, double>>& errors_wh) {
     ValidatedFlight flight;
-    flight.measured_wh[Phase::cruise] = 100.0;
+    flight.measured_wh.values = {0.0, 100.0, 0.0};
     for (const auto& [model, error_wh] : errors_wh) {
         FlightPrediction prediction{model, {}};
-        prediction.phases[Phase::cruise] = EnergyEstimate{100.0 + error_wh};
+        prediction.phases.values = {EnergyEstimate{0.0}, EnergyEstimate{100.0 + error_wh}, EnergyEstimate{0.0}};
         flight.predictions.push_back(prediction);
     }
     return flight;
@@ -146,6 +146,16 @@ TEST(ValidationOf, HasTheScoresOfWhatMissionsCanUse) {
     EXPECT_EQ(validation.scores[2].flights, 1U);
     EXPECT_NEAR(validation.scores[2].mean_absolute_error_percent, 2.0, 1e-12);
     EXPECT_FALSE(validation_of({flight_of({{"fourier", 3.0}})}, {})) << "nothing to compare with";
+}
+
+TEST(ValidationOf, HasNoScoreOfFlightsOfWhichAPhaseWasNotPredicted) {
+    const auto whole = flight_of({{"fourier", 3.0}, {"constant_mean", 4.0}});
+    auto without_cruise = flight_of({{"fourier", 50.0}, {"constant_mean", 60.0}});
+    without_cruise.measured_wh[Phase::cruise] = std::nullopt;
+    EXPECT_FALSE(validation_of({without_cruise}, {}));
+    const auto validation = validation_of({whole, without_cruise}, {}).value();
+    EXPECT_EQ(validation.scores[0].flights, 1U);
+    EXPECT_NEAR(validation.scores[0].mean_absolute_error_percent, 4.0, 1e-12);
 }
 
 /// Constant power, in fits that take no time.
