@@ -36,6 +36,25 @@ void note_omitted(const FailsafeCard& card, const std::string& of_low, const std
         result.notes.push_back(fmt::format("the battery has a constant voltage: {} are omitted", of_voltages));
 }
 
+/// A value of the low action as its format states it.
+struct LowValue {
+    double value = 0.0;
+    std::string comment = {};  ///< that it was raised; may be empty
+};
+
+/// Returns the value, raised to a step above the critical action's: of two equal ones the aircraft would land before it
+/// returns, and ArduPilot does not arm.
+LowValue above_critical(double low, double critical, double step, const std::string& low_name,
+                        const std::string& critical_name) {
+    constexpr double part_of_step = 1e-6;  // the error of a sum
+    const double least = critical + step;
+    if (low >= least - part_of_step * step) return {low};
+    return {least, fmt::format("{} is raised to a step above {}, so that the low action comes first", low_name,
+                               critical_name)};
+}
+
+std::string comment_line(const LowValue& low) { return low.comment.empty() ? "" : "# " + low.comment + "\n"; }
+
 /// A threshold of PX4 with its documented range.
 struct Px4Threshold {
     const char* name;
@@ -70,6 +89,32 @@ int cell_cv(double voltage_v, int cells) {
         "is the number of cells right (--cells)?");
 }
 
+/// The lines of both actions of a battery monitor, by its part of the charge; 0: it is not known.
+std::string ardupilot_actions(const FailsafeCard& card, const std::string& prefix, double part) {
+    std::string low_text;
+    std::string critical_text;
+    const auto add = [&](const std::string& unit, double step, int decimals, const auto& value_of) {
+        const auto low_name = fmt::format("{}_LOW_{}", prefix, unit);
+        const auto critical_name = fmt::format("{}_CRT_{}", prefix, unit);
+        const std::optional<double> low = card.low ? value_of(*card.low) : std::nullopt;
+        const std::optional<double> critical = value_of(card.critical);
+        if (low) {
+            const auto value = above_critical(*low, critical.value_or(0.0), step, low_name, critical_name);
+            low_text += comment_line(value) + fmt::format("{} {:.{}f}\n", low_name, value.value, decimals);
+        }
+        if (critical) critical_text += fmt::format("{} {:.{}f}\n", critical_name, *critical, decimals);
+    };
+    const bool is_counted = part > 0.0;
+    if (is_counted)
+        add("MAH", 1.0, 0,
+            [&](const FailsafeAction& action) { return std::optional(std::ceil(part * action.remaining_mah)); });
+    add("VOLT", 0.01, 2, [&](const FailsafeAction& action) {
+        const auto& voltage = is_counted ? action.voltage : action.voltage_alone;
+        return voltage ? std::optional(voltage->voltage_v) : std::nullopt;
+    });
+    return low_text + critical_text;
+}
+
 }  // namespace
 
 ParameterText to_failsafe_ardupilot(const EstimatorInput& input, const FailsafeCard& card) {
@@ -82,15 +127,7 @@ ParameterText to_failsafe_ardupilot(const EstimatorInput& input, const FailsafeC
         const auto prefix = monitor.number == 1 ? std::string("BATT") : fmt::format("BATT{}", monitor.number);
         if (are_counted) result.text += fmt::format("{}_CAPACITY {:.0f}\n", prefix, monitor.part * card.capacity_mah);
         result.text += fmt::format("{}_FS_VOLTSRC 0\n", prefix);
-        const auto add = [&](const FailsafeAction& action, const char* name) {
-            const auto& voltage = are_counted ? action.voltage : action.voltage_alone;
-            if (are_counted)
-                result.text +=
-                    fmt::format("{}_{}_MAH {:.0f}\n", prefix, name, std::ceil(monitor.part * action.remaining_mah));
-            if (voltage) result.text += fmt::format("{}_{}_VOLT {:.2f}\n", prefix, name, voltage->voltage_v);
-        };
-        if (card.low) add(*card.low, "LOW");
-        add(card.critical, "CRT");
+        result.text += ardupilot_actions(card, prefix, monitor.part);
     }
     note_omitted(card, "BATT_LOW_MAH and BATT_LOW_VOLT are", "BATT_LOW_VOLT and BATT_CRT_VOLT", result);
     return result;
@@ -107,8 +144,10 @@ ParameterText to_failsafe_px4(const EstimatorInput& input, const FailsafeCard& c
         result.text += px4_line(fmt::format("BAT{}_CAPACITY", monitor.number), monitor.part * card.capacity_mah);
     const double land = add_threshold(px4_emergency, card.critical.soc_percent / units::percent_per_whole, result);
     if (card.low) {
-        const double back = add_threshold(
-            px4_critical, std::max(card.low->soc_percent / units::percent_per_whole, land + step), result);
+        const auto low = above_critical(std::max(card.low->soc_percent / units::percent_per_whole, px4_critical.least),
+                                        land, step, px4_critical.name, px4_emergency.name);
+        result.text += comment_line(low);
+        const double back = add_threshold(px4_critical, low.value, result);
         add_threshold(px4_low, std::min(1.0, back + warning), result);
     }
     note_omitted(card, "BAT_LOW_THR and BAT_CRIT_THR, which have to be above BAT_EMERGEN_THR, are", "", result);
@@ -124,10 +163,21 @@ ParameterText to_failsafe_inav(const EstimatorInput& input, const FailsafeCard& 
     const auto set = [&](const char* name, auto value) { result.text += fmt::format("set {} = {}\n", name, value); };
     set("battery_capacity_unit", "MAH");
     set("battery_capacity", std::lround(card.capacity_mah));
-    if (card.low) set("battery_capacity_warning", card.low->remaining_mah);
+    const auto set_low = [&](const char* name, double low, const char* critical_name, double critical) {
+        const auto value = above_critical(low, critical, 1.0, name, critical_name);
+        result.text += comment_line(value);
+        set(name, std::lround(value.value));
+    };
+    const auto& critical_v = card.critical.voltage;
+    if (card.low)
+        set_low("battery_capacity_warning", card.low->remaining_mah, "battery_capacity_critical",
+                card.critical.remaining_mah);
     set("battery_capacity_critical", card.critical.remaining_mah);
-    if (card.low && card.low->voltage) set("vbat_warning_cell_voltage", cell_cv(card.low->voltage->voltage_v, cells));
-    if (card.critical.voltage) set("vbat_min_cell_voltage", cell_cv(card.critical.voltage->voltage_v, cells));
+    const int critical_cv = critical_v ? cell_cv(critical_v->voltage_v, cells) : 0;
+    if (card.low && card.low->voltage)
+        set_low("vbat_warning_cell_voltage", cell_cv(card.low->voltage->voltage_v, cells), "vbat_min_cell_voltage",
+                critical_cv);
+    if (critical_v) set("vbat_min_cell_voltage", critical_cv);
     note_omitted(card, "battery_capacity_warning and vbat_warning_cell_voltage are",
                  "vbat_warning_cell_voltage and vbat_min_cell_voltage", result);
     return result;
@@ -158,8 +208,13 @@ ParameterText to_failsafe_paparazzi(const EstimatorInput& /*input*/, const Fails
     };
     const auto up = [&](double voltage_v) { return std::ceil(voltage_v / step_v - exact); };
     const double critical = up(card.critical.voltage_alone->voltage_v);
-    if (card.low && card.low->voltage_alone)
-        define("LOW_BAT_LEVEL", std::max(critical, up(card.low->voltage_alone->voltage_v)));
+    if (card.low && card.low->voltage_alone) {
+        const auto low = above_critical(up(card.low->voltage_alone->voltage_v) * step_v, critical * step_v, step_v,
+                                        "LOW_BAT_LEVEL", "CRITIC_BAT_LEVEL");
+        if (!low.comment.empty())
+            section.append_child(pugi::node_comment).set_value(fmt::format(" {} ", low.comment).c_str());
+        define("LOW_BAT_LEVEL", low.value / step_v);
+    }
     define("CRITIC_BAT_LEVEL", critical);
     define("CATASTROPHIC_BAT_LEVEL", std::min(critical - 1.0, std::floor(*card.empty_voltage_v / step_v + exact)));
     std::ostringstream text;

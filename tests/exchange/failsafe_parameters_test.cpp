@@ -104,6 +104,45 @@ TEST(FailsafeFormats, HaveNoChargeWhereThePartsOfMonitorsAreNotKnown) {
     }
 }
 
+/// A return from next to home: no more than the landing.
+answer::FailsafeCard equal_card() {
+    auto card = wing_card();
+    card.low = card.critical;
+    return card;
+}
+
+TEST(FailsafeFormats, RaiseTheLowActionAboveAnEqualCriticalOne) {
+    auto input = wing_input();
+    input.battery->monitors = {{1, 0.7}, {2, 0.3}};
+    const auto card = equal_card();
+    const auto ardupilot = to_failsafe_ardupilot(input, card);
+    const auto values = values_of(ardupilot.text, 0, 1);
+    for (const auto* prefix : {"BATT", "BATT2"}) {
+        const auto value = [&](const char* name) { return values.at(fmt::format("{}_{}", prefix, name)); };
+        EXPECT_NEAR(value("LOW_VOLT"), value("CRT_VOLT") + 0.01, 1e-9) << "or ArduPilot does not arm";
+        EXPECT_EQ(value("LOW_MAH"), value("CRT_MAH") + 1.0);
+        EXPECT_NEAR(value("CRT_VOLT"), card.critical.voltage->voltage_v, 1e-9);
+    }
+    EXPECT_THAT(ardupilot.text, HasSubstr("# BATT2_LOW_VOLT is raised to a step above BATT2_CRT_VOLT"));
+    const auto px4 = to_failsafe_px4(wing_input(), card).text;
+    EXPECT_NEAR(values_of(px4, 2, 3).at("BAT_CRIT_THR"), values_of(px4, 2, 3).at("BAT_EMERGEN_THR") + 0.01, 1e-9);
+    EXPECT_THAT(px4, HasSubstr("# BAT_CRIT_THR is raised to a step above BAT_EMERGEN_THR"));
+    const auto inav = to_failsafe_inav(wing_input(), card).text;
+    const auto alarms = values_of(inav, 1, 3);
+    EXPECT_EQ(alarms.at("battery_capacity_warning"), alarms.at("battery_capacity_critical") + 1.0);
+    EXPECT_EQ(alarms.at("vbat_warning_cell_voltage"), alarms.at("vbat_min_cell_voltage") + 1.0);
+    EXPECT_THAT(inav, HasSubstr("# vbat_warning_cell_voltage is raised to a step above vbat_min_cell_voltage"));
+    const auto paparazzi = to_failsafe_paparazzi(wing_input(), card).text;
+    EXPECT_THAT(paparazzi, HasSubstr("<!-- LOW_BAT_LEVEL is raised to a step above CRITIC_BAT_LEVEL"));
+    EXPECT_THAT(paparazzi, HasSubstr(R"(name="LOW_BAT_LEVEL" value="11.3")"));
+    EXPECT_THAT(paparazzi, HasSubstr(R"(name="CRITIC_BAT_LEVEL" value="11.2")"));
+}
+
+TEST(FailsafeFormats, StateNothingRaisedWhereTheActionsDiffer) {
+    for (const auto write : {to_failsafe_ardupilot, to_failsafe_px4, to_failsafe_inav, to_failsafe_paparazzi})
+        EXPECT_THAT(write(wing_input(), wing_card()).text, Not(HasSubstr("raised")));
+}
+
 TEST(FailsafePx4, OfSeveralMonitorsHasTheCapacityOfEach) {
     auto input = wing_input();
     input.battery->monitors = {{2, 0.6}, {3, 0.4}};
