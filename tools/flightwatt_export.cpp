@@ -241,8 +241,16 @@ double compute_w(const mission::MissionVariant& mission) {
     return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
 }
 
-exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::EstimatorInput result,
-                                         const std::vector<ExportInput>& inputs) {
+/// An aircraft, and what its mission states about the way home.
+struct AircraftInput {
+    exchange::EstimatorInput estimator;
+    std::optional<path::Wind> wind = {};  ///< of a mission with a path; absent where it is calm
+};
+
+AircraftInput aircraft_input(const cli::StageCall& call, const exchange::EstimatorInput& arguments,
+                             const std::vector<ExportInput>& inputs) {
+    AircraftInput aircraft{arguments};
+    auto& result = aircraft.estimator;
     for (const auto& [file, kind] : inputs) {
         if (kind == ExportKind::model) result.model = mechanical::read_predicting_model(file);
         if (kind == ExportKind::battery) {
@@ -258,14 +266,18 @@ exchange::EstimatorInput estimator_input(const cli::StageCall& call, exchange::E
         result.battery = setup.battery;
         result.compute_w = compute_w(mission);
         if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
+        if (!setup.cruise_path) continue;
+        const auto& wind = setup.cruise_path->plan->wind;
+        if (wind.speed_m_per_s > 0.0 || wind.speed_sd_m_per_s > 0.0) aircraft.wind = wind;
     }
-    return result;
+    return aircraft;
 }
 
 constexpr double max_wind_m_per_s = 100.0;
 constexpr double degree_per_turn = 360.0;
 
-Exported export_failsafe(const ExportArguments& arguments, const exchange::EstimatorInput& input, const Format& to) {
+Exported export_failsafe(const ExportArguments& arguments, const AircraftInput& aircraft, const Format& to) {
+    const auto& input = aircraft.estimator;
     if (!input.model || !input.battery)
         throw UsageError(fmt::format("{} is made of a model and a battery, or of a mission", to.name));
     auto request = arguments.failsafe;
@@ -273,7 +285,11 @@ Exported export_failsafe(const ExportArguments& arguments, const exchange::Estim
     request.battery = *input.battery;
     request.compute_w = input.compute_w;
     if (!request.reserve_percent) request.reserve_percent = input.reserve_percent;
-    if (arguments.wind) request.wind = cli::parse_wind(*arguments.wind, request.home_course_deg.has_value());
+    request.wind_is_of_mission = !arguments.wind && aircraft.wind;
+    if (arguments.wind)
+        request.wind = cli::parse_wind(*arguments.wind, request.home_course_deg.has_value());
+    else if (aircraft.wind)
+        request.wind = *aircraft.wind;
     const auto card = make_failsafe_card(request);
     auto parameters = to.write_failsafe(input, card);
     Exported result{std::move(parameters.text), std::move(parameters.notes)};
@@ -313,9 +329,9 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
                   const Format& to) {
     const auto& format = to.name;
     const auto& file = inputs.front().file;
-    if (to.write_failsafe) return export_failsafe(arguments, estimator_input(call, arguments.estimator, inputs), to);
+    if (to.write_failsafe) return export_failsafe(arguments, aircraft_input(call, arguments.estimator, inputs), to);
     if (to.write) {
-        auto parameters = to.write(estimator_input(call, arguments.estimator, inputs));
+        auto parameters = to.write(aircraft_input(call, arguments.estimator, inputs).estimator);
         return {std::move(parameters.text), std::move(parameters.notes)};
     }
     if (format == "geojson" || format == "kml" || format == "gpx") return export_track(call, arguments, file, format);
@@ -397,8 +413,10 @@ failsafe-px4, failsafe-inav, failsafe-paparazzi). Of models, missions and the fo
     options.add("home-distance", card.home_distance_m,
                 {.value = "M", .min = 0.0, .max = max_distance_m, .above_min = true, .unit = "m"},
                 "the farthest place from which to return; without it there is no value to return by");
-    options.add("wind", arguments.wind, {.value = "SPEED@DEG"},
-                "in m/s, and degrees from which: 6@250; it blows from home, unless --home-course is given");
+    options.add(
+        "wind", arguments.wind, {.value = "SPEED@DEG"},
+        "in m/s, and degrees from which: 6@250; it blows from home, unless --home-course is given; default: the "
+        "mission's, else calm");
     options.add("home-course", card.home_course_deg,
                 {.value = "DEG", .min = -degree_per_turn, .max = degree_per_turn, .unit = "degrees"},
                 "the course home, if there is only one");

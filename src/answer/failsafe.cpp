@@ -172,7 +172,10 @@ WayHome way_home(const FailsafeRequest& request) {
     way.distance_m = request.home_distance_m ? request.home_distance_m : request.flown_distance_m;
     way.wind = request.wind;
     const double course_deg = request.home_course_deg.value_or(0.0);
-    if (!request.home_course_deg) way.wind.from_deg = course_deg;
+    if (!request.home_course_deg) {
+        way.wind.from_deg = course_deg;
+        way.wind.direction_sd_deg = 0.0;  // no direction is worse
+    }
     const auto& physical = request.model.physical;
     const double flown = physical ? physical->mean_airspeed_m_per_s : 0.0;
     const double usual = request.model.is_rotorcraft ? std::max(flown, least_return_m_per_s) : flown;
@@ -272,6 +275,16 @@ bool is_landed_short(const Fleet& fleet, std::size_t i, double used_ah, double c
     return start <= 0.0 || soc_after(draw, start, way) < fleet.true_percent(i, critical_used_ah);
 }
 
+std::string wind_text(const FailsafeRequest& request, const path::Wind& wind) {
+    if (wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0) return "calm, as none is stated";
+    auto text = fmt::format("{:g} m/s", wind.speed_m_per_s);
+    if (wind.speed_sd_m_per_s > 0.0)
+        text += fmt::format(" with a standard deviation of {:g} m/s", wind.speed_sd_m_per_s);
+    if (request.wind_is_of_mission) text += ", as the mission states,";
+    text += request.home_course_deg ? fmt::format(" from {:g} degrees", wind.from_deg) : " from ahead, the worst,";
+    return text + " all the way home";
+}
+
 std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHome& way, const Fleet& fleet,
                                      double reserve_percent) {
     std::vector<GroundedPart> grounds;
@@ -282,13 +295,7 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
         add(request.home_distance_m ? Ground::assumption : Ground::measured,
             fmt::format("distance: {:.0f} m, {}", *way.distance_m,
                         request.home_distance_m ? "as stated" : "the largest from the start in the flights"));
-        const auto& wind = way.wind;
-        add(Ground::assumption,
-            wind.speed_m_per_s > 0.0
-                ? fmt::format("wind: {:g} m/s {} all the way home", wind.speed_m_per_s,
-                              request.home_course_deg ? fmt::format("from {:g} degrees", wind.from_deg)
-                                                      : std::string("from ahead, the worst,"))
-                : std::string("wind: calm, as none is stated"));
+        add(Ground::assumption, "wind: " + wind_text(request, way.wind));
         if (physical) {
             const bool is_flown = is_within_flown_range(*physical, {way.airspeed_m_per_s, 0.0, 1.0});
             add(Ground::physics,

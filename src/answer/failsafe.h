@@ -48,6 +48,7 @@ struct FailsafeRequest {
     std::optional<double> home_distance_m = {};   ///< farthest place from which it is to return
     std::optional<double> flown_distance_m = {};  ///< without it: the largest from the start in the flights' tracks
     path::Wind wind = {};                         ///< with its standard deviations, if known
+    bool wind_is_of_mission = false;              ///< and not stated for the way home
     std::optional<double> home_course_deg = {};   ///< absent: the wind blows from home, the worst
     std::optional<double> airspeed_m_per_s = {};  ///< default: the mean cruise of a physical model
     double probability = 0.95;                    ///< with which an action is early enough

@@ -179,6 +179,19 @@ TEST(FailsafeCard, TakesTheWindFromAheadUnlessTheCourseIsKnown) {
     EXPECT_LT(make_failsafe_card(request).low->remaining_mah, worst.low->remaining_mah);
 }
 
+TEST(FailsafeCard, StatesTheWindOfAMissionAndTakesItFromAheadWhateverItsDirection) {
+    auto request = wing_request();
+    request.wind = {.speed_m_per_s = 4.0, .from_deg = 250.0, .speed_sd_m_per_s = 1.0};
+    request.wind_is_of_mission = true;
+    const auto card = make_failsafe_card(request);
+    EXPECT_THAT(describe(card), HasSubstr("wind: 4 m/s with a standard deviation of 1 m/s, as the mission states, from "
+                                          "ahead, the worst, all the way home"));
+    request.wind.direction_sd_deg = 90.0;
+    EXPECT_EQ(make_failsafe_card(request).low->remaining_mah, card.low->remaining_mah);
+    request.wind.speed_m_per_s = 0.0;
+    EXPECT_THAT(describe(make_failsafe_card(request)), HasSubstr("wind: 0 m/s with a standard deviation of 1 m/s"));
+}
+
 TEST(FailsafeCard, OfARotorcraftReturnsAsFastOverGroundInAnyWind) {
     auto request = wing_request();
     request.model.is_rotorcraft = true;

@@ -119,6 +119,23 @@ TEST(Export, AddsTheMissionsComputer) {
     EXPECT_NEAR(std::stod(result.out.substr(at + 13)), compute_cw, 0.51);
 }
 
+TEST(Export, FailsafesOfAMissionCountItsWind) {
+    const auto folder = test::scratch_dir();
+    const std::string words = "$S/missions/synthetic/survey-path.toml --format failsafe-ardupilot --home-distance 1800";
+    const auto left_mah = [&](const test::ProgramResult& result) {
+        EXPECT_EQ(result.code, 0) << result.err;
+        const auto at = result.out.find("BATT_LOW_MAH ");
+        return at == std::string::npos ? 0.0 : std::stod(result.out.substr(at + 13));
+    };
+    const auto of_mission = exported(words, folder);
+    EXPECT_THAT(of_mission.out, HasSubstr("wind: 4 m/s with a standard deviation of 1 m/s, as the mission states, from "
+                                          "ahead, the worst, all the way home"));
+    const auto calm = exported(words + " --wind 0", folder);
+    EXPECT_THAT(calm.out, HasSubstr("wind: calm"));
+    EXPECT_GT(left_mah(of_mission), left_mah(exported(words + " --wind 3.9", folder)));
+    EXPECT_GT(left_mah(of_mission), left_mah(calm));
+}
+
 TEST(Export, OfALogAndItsSeriesIsTheSame) {
     const auto folder = test::scratch_dir();
     const auto made = test::run_shell(
