@@ -107,6 +107,7 @@ void add_failsafe(const AnswerArguments& arguments, const answer::KnownAircraft&
         return;
     }
     answer::FailsafeRequest request{.model = mission.mechanical.value(), .battery = mission.battery};
+    request.payload = mission.payload;
     request.reserve_percent = arguments.question.reserve_soc_percent;
     request.home_distance_m = arguments.home_distance_m;
     for (const auto& flight : aircraft.flights)

@@ -241,10 +241,11 @@ double compute_w(const mission::MissionVariant& mission) {
     return summary.duration_s > 0.0 ? units::joule_from_wh(summary.compute_energy_wh) / summary.duration_s : 0.0;
 }
 
-/// An aircraft, and what its mission states about the way home.
+/// An aircraft, and what its mission states for a failsafe.
 struct AircraftInput {
     exchange::EstimatorInput estimator;
     std::optional<path::Wind> wind = {};  ///< of a mission with a path; absent where it is calm
+    std::optional<mission::PayloadBasis> payload = {};
 };
 
 AircraftInput aircraft_input(const cli::StageCall& call, const exchange::EstimatorInput& arguments,
@@ -266,6 +267,7 @@ AircraftInput aircraft_input(const cli::StageCall& call, const exchange::Estimat
         result.battery = setup.battery;
         result.compute_w = compute_w(mission);
         if (setup.reserve_soc_percent > 0.0) result.reserve_percent = setup.reserve_soc_percent;
+        aircraft.payload = setup.payload;
         if (!setup.cruise_path) continue;
         const auto& wind = setup.cruise_path->plan->wind;
         if (wind.speed_m_per_s > 0.0 || wind.speed_sd_m_per_s > 0.0) aircraft.wind = wind;
@@ -283,6 +285,7 @@ Exported export_failsafe(const ExportArguments& arguments, const AircraftInput& 
     auto request = arguments.failsafe;
     request.model = *input.model;
     request.battery = *input.battery;
+    request.payload = aircraft.payload;
     request.compute_w = input.compute_w;
     if (!request.reserve_percent) request.reserve_percent = input.reserve_percent;
     request.wind_is_of_mission = !arguments.wind && aircraft.wind;

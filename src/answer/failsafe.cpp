@@ -291,6 +291,9 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
     const auto add = [&](Ground ground, std::string text) { grounds.push_back({ground, std::move(text)}); };
     const auto& phases = request.model.phases;
     const auto& physical = request.model.physical;
+    const auto& payload = request.payload;
+    const auto power_ground = !payload ? Ground::measured : payload->is_assumed ? Ground::assumption : Ground::physics;
+    const std::string changes = payload ? ", changed by the payload" : "";
     if (way.missing.empty()) {
         add(request.home_distance_m ? Ground::assumption : Ground::measured,
             fmt::format("distance: {:.0f} m, {}", *way.distance_m,
@@ -298,17 +301,22 @@ std::vector<GroundedPart> grounds_of(const FailsafeRequest& request, const WayHo
         add(Ground::assumption, "wind: " + wind_text(request, way.wind));
         if (physical) {
             const bool is_flown = is_within_flown_range(*physical, {way.airspeed_m_per_s, 0.0, 1.0});
-            add(Ground::physics,
+            add(std::max(Ground::physics, power_ground),
                 fmt::format("power on the way home: {:.1f} W, by the physical model at {:.1f} m/s{}", fleet.cruise_w,
                             way.airspeed_m_per_s, is_flown ? "" : ", outside of the airspeeds flown"));
         } else {
-            add(Ground::assumption, fmt::format("power on the way home: {:.1f} W, the mean cruise of the flights, "
+            add(Ground::assumption, fmt::format("power on the way home: {:.1f} W, the mean cruise of the flights{}, "
                                                 "whatever the airspeed; {:.1f} m/s over ground",
-                                                fleet.cruise_w, *way.distance_m / way.duration_s));
+                                                fleet.cruise_w, changes, *way.distance_m / way.duration_s));
         }
     }
-    add(Ground::measured, fmt::format("landing: {:.0f} s at {:.1f} W, the mean of the flights",
-                                      phases[landing].duration_s, mean_power_w(phases[landing]) + request.compute_w));
+    add(power_ground,
+        fmt::format("landing: {:.0f} s at {:.1f} W, the mean of the flights{}", phases[landing].duration_s,
+                    mean_power_w(phases[landing]) + request.compute_w, changes));
+    if (payload) add(power_ground, fmt::format("payload: {:g} kg, {}", payload->payload_kg, payload->text));
+    if (request.compute_w > 0.0)
+        add(Ground::assumption,
+            fmt::format("computer: {:.1f} W in these powers, its mean in the mission", request.compute_w));
     add(Ground::assumption, fmt::format("reserve: {:g} %, {}; the critical action keeps {:g} %", reserve_percent,
                                         request.reserve_percent ? "as stated" : "as none is stated",
                                         critical_reserve_part * reserve_percent));

@@ -3,6 +3,7 @@
 #include "base/statistics.h"
 #include "battery/battery.h"
 #include "mechanical/mechanical_model.h"
+#include "mission/mission.h"
 #include "path/path.h"
 
 #include <optional>
@@ -43,7 +44,8 @@ inline constexpr double early_points = 10.0;
 struct FailsafeRequest {
     mechanical::MechanicalModel model;  ///< as of mechanical::read_predicting_model()
     battery::Battery battery;
-    double compute_w = 0.0;  ///< mean power of the computer, in addition to the model's
+    std::optional<mission::PayloadBasis> payload = {};  ///< of the model's powers
+    double compute_w = 0.0;                             ///< mean power of the computer, in addition to the model's
     std::optional<double> reserve_percent = {};
     std::optional<double> home_distance_m = {};   ///< farthest place from which it is to return
     std::optional<double> flown_distance_m = {};  ///< without it: the largest from the start in the flights' tracks

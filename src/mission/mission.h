@@ -74,6 +74,13 @@ struct SurveyCoverage {
     std::optional<double> utility = {};
 };
 
+/// What the powers of a mission rest on, where a payload changes those of its model's flights.
+struct PayloadBasis {
+    double payload_kg = 0.0;
+    bool is_assumed = false;  ///< and not what the flights show
+    std::string text;         ///< "its power is assumed to be ..."
+};
+
 /// A flight, the software that can run in it, and the battery that feeds both: all but the schedule.
 struct MissionSetup {
     std::string file;
@@ -99,10 +106,11 @@ struct MissionSetup {
     double reserve_soc_percent = 0.0;  ///< what should be left at the end
     Uncertainty uncertainty;
     std::optional<mechanical::HeldOutScore> power_model =
-        {};                                   ///< of the model that predicts the power, if its file has a validation
-    std::vector<std::string> notes = {};      ///< warnings from reading the file
-    std::vector<std::string> uncertain = {};  ///< reasons why the result may be wrong, which no probability covers
-    std::optional<Packs> packs = {};          ///< then it is divided (packs.h) before anything flies it
+        {};                                    ///< of the model that predicts the power, if its file has a validation
+    std::vector<std::string> notes = {};       ///< warnings from reading the file
+    std::vector<std::string> uncertain = {};   ///< reasons why the result may be wrong, which no probability covers
+    std::optional<PayloadBasis> payload = {};  ///< absent: the powers are those of the model's flights
+    std::optional<Packs> packs = {};           ///< then it is divided (packs.h) before anything flies it
 };
 
 /// A mission that can be flown.

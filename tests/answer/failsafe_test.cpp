@@ -192,6 +192,24 @@ TEST(FailsafeCard, StatesTheWindOfAMissionAndTakesItFromAheadWhateverItsDirectio
     EXPECT_THAT(describe(make_failsafe_card(request)), HasSubstr("wind: 0 m/s with a standard deviation of 1 m/s"));
 }
 
+TEST(FailsafeCard, StatesThatPowersWithAPayloadAreNotMeasured) {
+    auto request = wing_request();
+    EXPECT_THAT(describe(make_failsafe_card(request)), HasSubstr("measured: landing: 50 s at 9.0 W, the mean of the "
+                                                                 "flights\n"));
+    request.payload = mission::PayloadBasis{0.3, true, "its power is assumed to be proportional to mass^1.5"};
+    request.compute_w = 2.0;
+    auto text = describe(make_failsafe_card(request));
+    EXPECT_THAT(text, HasSubstr("assumption: power on the way home"));
+    EXPECT_THAT(text,
+                HasSubstr("assumption: landing: 50 s at 11.0 W, the mean of the flights, changed by the payload"));
+    EXPECT_THAT(text, HasSubstr("assumption: payload: 0.3 kg, its power is assumed to be proportional to mass^1.5"));
+    EXPECT_THAT(text, HasSubstr("assumption: computer: 2.0 W in these powers"));
+    request.payload->is_assumed = false;
+    text = describe(make_failsafe_card(request));
+    EXPECT_THAT(text, HasSubstr("physics: power on the way home"));
+    EXPECT_THAT(text, HasSubstr("physics: landing: 50 s"));
+}
+
 TEST(FailsafeCard, OfARotorcraftReturnsAsFastOverGroundInAnyWind) {
     auto request = wing_request();
     request.model.is_rotorcraft = true;

@@ -155,7 +155,10 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
         const auto usual = usual_motion(*model.physical);
         const double flown_w = power_w(*model.physical, usual);
         set_payload(*payload_kg, model.is_rotorcraft, *model.physical);
-        return scale_phases(flown_w > 0.0 ? power_w(*model.physical, usual) / flown_w : 1.0, model);
+        const double factor = flown_w > 0.0 ? power_w(*model.physical, usual) / flown_w : 1.0;
+        if (factor != 1.0)
+            mission.payload = {*payload_kg, false, "its power is by the physical model, as the flights show it"};
+        return scale_phases(factor, model);
     }
     if (mass_kg) require_plausible_mass(mission_table, *mass_kg, *payload_kg, model);
     const auto assumed = assume_payload(*payload_kg, mass_kg, model);
@@ -167,6 +170,7 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
                     : "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
                       "wings, whose flights must determine the induced drag too, fit flights that state their payload");
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));
+    if (assumed.factor != 1.0) mission.payload = {*payload_kg, true, assumed.reason};
     scale_phases(assumed.factor, model);
     widen(std::abs(1.0 - 1.0 / assumed.factor) * assumed_change_sd, model);
 }

@@ -57,6 +57,10 @@ TEST(PayloadToml, OfARotorcraftWithoutTermsIsThatOfMassToThePowerOfOneAndAHalf) 
         EXPECT_NEAR(cruise_w(mission), 200.0 * factor, 1e-9);
         ASSERT_EQ(mission.setup.notes.size(), 1U);
         EXPECT_THAT(mission.setup.notes[0], HasSubstr("assumed to be proportional to mass^1.5"));
+        ASSERT_TRUE(mission.setup.payload) << "what the powers rest on";
+        EXPECT_TRUE(mission.setup.payload->is_assumed);
+        EXPECT_FALSE(mission_on(model_of(terms, true), "payload_kg = 0\ntakeoff_mass_kg = 2.5\n").setup.payload)
+            << "as flown";
         const double assumed_w = 0.2 * 200.0 * (factor - 1.0);
         EXPECT_NEAR(mission.setup.mechanical->phases[flight::Phase::landing].level_spread->between_flight_sd_w,
                     std::hypot(6.0 * factor, assumed_w), 1e-9);
