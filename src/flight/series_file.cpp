@@ -115,7 +115,7 @@ void list_matter(TomlFields& fields, FrontMatter& matter) {
     fields.text("aircraft_id", series.aircraft_id);
     fields.text("aircraft_name", series.aircraft_name);
     fields.optional_text("firmware", series.firmware);
-    fields.choice("current_origin", series.current_origin, current_origins);
+    if (fields.has("current_origin", true)) fields.choice("current_origin", series.current_origin, current_origins);
     fields.optional_real("planned_ground_altitude_m", series.planned_ground_altitude_m);
     fields.optional_real("start_clock_s", series.start_clock_s);
     fields.optional_flag("lacks_log", series.log_is_missing);

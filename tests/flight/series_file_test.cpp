@@ -176,6 +176,7 @@ TEST(SeriesFile, RefusesANewerFormatAndWhatItDoesNotKnow) {
     EXPECT_THAT(refusal(front + "# current_origin = \"guessed\"\n" + table), HasSubstr("s.csv:5:"));
     EXPECT_THAT(refusal(front + "# current_origin = \"unknown\"\n# colour = 1\n" + table), HasSubstr("colour"));
     EXPECT_EQ(refusal(front + "# current_origin = \"unknown\"\n" + table), "");
+    EXPECT_EQ(refusal(front + table), "") << "current_origin is optional";
 }
 
 TEST(SeriesFile, OfACorrectedSeriesIsNotCorrectedAgain) {
