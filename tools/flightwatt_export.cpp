@@ -98,7 +98,7 @@ const std::vector<Format>& formats() {
         {"px4", ".params", of_aircraft, {"cells"}, exchange::to_px4},
         {"inav", "", of_aircraft, {"cells", "idle-power"}, exchange::to_inav},
         {"paparazzi", "", of_aircraft, {"cells", "parallel"}, exchange::to_paparazzi},
-        {"paparazzi-map", "", {battery, mission}, {"cells", "parallel"}, exchange::to_paparazzi_map},
+        {"paparazzi-map", "", of_aircraft, {"cells", "parallel"}, exchange::to_paparazzi_map},
         {"ardupilot-sitl", ".parm", of_aircraft, {}, exchange::to_ardupilot_sitl},
         {"px4-sitl", "", of_aircraft, {"cells"}, exchange::to_px4_sitl},
         {"gazebo", ".sdf", of_aircraft, {}, exchange::to_gazebo},

@@ -119,6 +119,19 @@ TEST(Export, AddsTheMissionsComputer) {
     EXPECT_NEAR(std::stod(result.out.substr(at + 13)), compute_cw, 0.51);
 }
 
+TEST(Export, MapOfPaparazziIsOfTheBatteryWithOrWithoutAModel) {
+    const auto folder = test::scratch_dir();
+    const std::string pack = "$S/fits/battery/synthetic-3s.toml --format paparazzi-map";
+    const auto alone = exported(pack, folder);
+    EXPECT_EQ(alone.code, 0) << alone.err;
+    const auto with_model = exported("$S/fits/mechanical/synthetic-wing.toml " + pack, folder);
+    EXPECT_EQ(with_model.code, 0) << with_model.err;
+    EXPECT_EQ(with_model.out, alone.out);
+    const auto model = exported("$S/fits/mechanical/synthetic-wing.toml --format paparazzi-map", folder);
+    EXPECT_EQ(model.code, 3);
+    EXPECT_THAT(model.err, HasSubstr("needs a battery"));
+}
+
 TEST(Export, FailsafesOfAMissionCountItsWind) {
     const auto folder = test::scratch_dir();
     const std::string words = "$S/missions/synthetic/survey-path.toml --format failsafe-ardupilot --home-distance 1800";
