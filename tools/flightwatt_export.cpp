@@ -343,7 +343,7 @@ Exported exported(const cli::StageCall& call, const ExportArguments& arguments, 
     if (format == "c") return {exchange::to_c_header(mechanical::read_predicting_model(file))};
     return {inputs.front().kind == ExportKind::battery
                 ? exchange::to_json_text(battery::read_battery(file))
-                : exchange::to_json_text(mechanical::read_predicting_model(file))};
+                : exchange::to_json_text(mechanical::read_mechanical_model(file))};
 }
 
 int export_inputs(const cli::StageCall& call, const ExportArguments& arguments) {

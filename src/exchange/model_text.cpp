@@ -46,13 +46,24 @@ std::string comment_text(std::string_view text) {
     return result;
 }
 
+/// The phases whose curve is a constant by decision, whatever the description says of series; empty without one.
+std::string note_of_means(const mechanical::MechanicalModel& model) {
+    std::vector<std::string_view> names;
+    for (const auto phase : flight::all_phases) {
+        const auto& of = model.phases[phase];
+        if (of.power.by == mechanical::PowerBasis::mean && of.fourier.cos_w.empty()) names.push_back(to_string(phase));
+    }
+    if (names.empty()) return "";
+    return fmt::format(" * Of the flights' mean power, not of a series: {}.\n", fmt::join(names, ", "));
+}
+
 std::string heading(const mechanical::MechanicalModel& model, const std::string& prefix) {
     std::vector<std::string> flights;
     for (const auto& flight : model.flights) flights.push_back(comment_text(flight.flight));
     return fmt::format(
         "/* Electrical power of an aircraft over its flight: model {0}.\n"
         " * {1}\n"
-        "{2}"
+        "{2}{5}"
         " * Written by flightwatt export " FLIGHTWATT_VERSION
         ". C99, needs <math.h> alone. Powers in W, energies in J, times in s\n"
         " * since the phase began, speeds in m/s, angles in rad. */\n"
@@ -60,7 +71,7 @@ std::string heading(const mechanical::MechanicalModel& model, const std::string&
         "enum {4}_phase {{ {3}_TAKEOFF, {3}_CRUISE, {3}_LANDING }};\n\n",
         comment_text(model.name), comment_text(model.description),
         flights.empty() ? "" : fmt::format(" * Flights: {}.\n", fmt::join(flights, ", ")),
-        boost::algorithm::to_upper_copy(prefix), prefix);
+        boost::algorithm::to_upper_copy(prefix), prefix, note_of_means(model));
 }
 
 /// One row a phase, filled up with zeros.

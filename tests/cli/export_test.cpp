@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
+#include "mechanical/mechanical_model.h"
 
 #include <filesystem>
 #include <string>
@@ -117,6 +118,25 @@ TEST(Export, AddsTheMissionsComputer) {
     const auto at = result.out.find("idle_power = ");
     ASSERT_NE(at, std::string::npos);
     EXPECT_NEAR(std::stod(result.out.substr(at + 13)), compute_cw, 0.51);
+}
+
+TEST(Export, JsonOfAModelIsThatOfItsFileAlsoWhereMeanPowerPredicts) {
+    const auto folder = test::scratch_dir();
+    auto model = mechanical::read_mechanical_model(test::source_dir() / "fits/mechanical/synthetic-wing.toml");
+    auto& cruise = model.phases[flight::Phase::cruise];
+    cruise.power = {mechanical::PowerBasis::mean, "tried"};
+    cruise.fourier.cos_w = {1.0, 2.0, 3.0};
+    cruise.fourier.sin_w = {4.0, 5.0, 6.0};
+    model.flights = {{"made-up-1", {}}};
+    model.flights[0].phases[flight::Phase::cruise] = mechanical::PhaseContribution{
+        .weight = 1.0, .duration_s = 600.0, .rms_w = 1.0, .samples = 600, .mean_power_w = 25.0};
+    write_file_atomically(folder / "m.toml", to_toml(model));
+    const auto result = exported("m.toml --format json", folder);
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto json = nlohmann::json::parse(result.out).at("cruise");
+    EXPECT_EQ(json.at("power"), "mean");
+    EXPECT_EQ(json.at("a0_w").get<double>(), cruise.fourier.a0_w);
+    EXPECT_EQ(json.at("cos_w").get<std::vector<double>>(), cruise.fourier.cos_w);
 }
 
 TEST(Export, MapOfPaparazziIsOfTheBatteryWithOrWithoutAModel) {

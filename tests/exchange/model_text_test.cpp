@@ -116,6 +116,17 @@ TEST(CHeader, IsNotBrokenByAName) {
               std::vector<double>{model.phases[flight::Phase::cruise].duration_s});
 }
 
+TEST(CHeader, NamesThePhasesOfMeanPower) {
+    auto model = model_file("opterra-table1");
+    EXPECT_THAT(to_c_header(model), testing::Not(testing::HasSubstr("mean power")));
+    for (const auto phase : {flight::Phase::takeoff, flight::Phase::landing}) {
+        model.phases[phase].power.by = mechanical::PowerBasis::mean;
+        model.phases[phase].fourier.cos_w = model.phases[phase].fourier.sin_w = {};
+    }
+    EXPECT_THAT(to_c_header(model),
+                testing::HasSubstr(" * Of the flights' mean power, not of a series: takeoff, landing.\n"));
+}
+
 TEST(ModelJson, HoldsTheKeysOfTheFile) {
     const auto model = model_file("synthetic-wing");
     const auto json = nlohmann::json::parse(to_json_text(model));
