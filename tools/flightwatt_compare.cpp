@@ -42,9 +42,8 @@ Form form_of(const cli::StageCall& call) {
 }
 
 std::string ranking_text(const cli::StageCall& call, const std::vector<mission::MissionSummary>& ranking, Form form) {
-    constexpr int digits = 10;
     const auto missions = cli::ranked_missions(ranking);
-    if (form == Form::csv) return csv_of(missions, digits);
+    if (form == Form::csv) return csv_of(missions);
     const auto table = table_of(missions);
     if (form == Form::markdown) return to_markdown(table);
     const auto screen = call.output ? cli::Screen() : screen_of(call);

@@ -1,6 +1,7 @@
 // flightwatt-simulate and flightwatt-compare as a user runs them.
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "helpers/rejected.h"
 #include "helpers/running_program.h"
 
@@ -156,6 +157,20 @@ TEST(Compare, ListsSummariesAsJson) {
     EXPECT_EQ(json[1]["mission"], "small");
     EXPECT_NEAR(json[1]["depleted_at_s"].get<double>(), 2880.0, 1e-8);
     EXPECT_THAT(read_file(folder / "table.txt"), StartsWith("rank  mission"));
+}
+
+TEST(Compare, TableAsCsvHasAllDigits) {
+    const auto folder = test::scratch_dir();
+    write_mission(folder, "m", "voltage_v = 10, resistance_ohm = 0.3, capacity_ah = 7");
+    const auto result = run(folder, "compare", "m.toml --json -o table.csv");
+    const auto json = nlohmann::json::parse(result.out)["missions"][0];
+    const auto table = read_csv(folder / "table.csv");
+    ASSERT_EQ(table.rows.size(), 1U);
+    for (const auto* key : {"final_soc_percent", "delivered_energy_wh"}) {
+        const auto column = std::ranges::find(table.columns, key) - table.columns.begin();
+        EXPECT_EQ(std::stod(table.rows[0].cells.at(static_cast<std::size_t>(column)).text), json[key].get<double>())
+            << key;
+    }
 }
 
 TEST(Compare, RanksWhatCannotBeDeliveredLast) {
