@@ -238,7 +238,8 @@ end_latitude_deg and end_longitude_deg, or end_east_m and end_north_m from the s
 Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of ArduPilot) the blocks: what of each
 a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
-[path]): a place every 30 s, with the airspeed on the way there and how long it took.)"};
+[path]): a place about every 30 s, and between them as many as keep lines within 3 m of the track, with the
+airspeed on the way there and how long it took.)"};
     stage.next = [](const auto& call) {
         if (call.inputs.empty()) return "waypoints = \"{}\" in the [path] of a mission";
         return call.inputs.front().ends_with(".toml")
