@@ -46,7 +46,7 @@ std::string comment_text(std::string_view text) {
     return result;
 }
 
-/// The phases whose curve is a constant by decision, whatever the description says of series; empty without one.
+/// A line with the phases whose curve is a constant by decision, though the description has series; empty without one.
 std::string note_of_means(const mechanical::MechanicalModel& model) {
     std::vector<std::string_view> names;
     for (const auto phase : flight::all_phases) {
