@@ -276,7 +276,7 @@ bool is_landed_short(const Fleet& fleet, std::size_t i, double used_ah, double c
 }
 
 std::string wind_text(const FailsafeRequest& request, const path::Wind& wind) {
-    if (wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0) return "calm, as none is stated";
+    if (wind.speed_m_per_s == 0.0 && wind.speed_sd_m_per_s == 0.0) return "calm, as no other is stated";
     auto text = fmt::format("{:g} m/s", wind.speed_m_per_s);
     if (wind.speed_sd_m_per_s > 0.0)
         text += fmt::format(" with a standard deviation of {:g} m/s", wind.speed_sd_m_per_s);
