@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "mission/file/takeoff_height.h"
 #include "mission/plan.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_distribution.h"
@@ -37,13 +38,14 @@ struct CruisePart : TimeInterval {
 };
 
 /// The schedule of a part of the cruise, which is flown in `cruise` of the flight's. What runs at its ends also runs on
-/// the ways there and home.
-Schedule schedule_of(const Schedule& whole, const CruisePart& part, const TimeInterval& cruise,
-                     const PerPhase<double>& flown_s) {
+/// the ways there and home, and what runs at the end of take-off and landing as long as those of the flight last.
+Schedule schedule_of(const Schedule& whole, const PerPhase<double>& whole_s, const CruisePart& part,
+                     const TimeInterval& cruise, const PerPhase<double>& flown_s) {
     Schedule schedule;
     for (const auto phase : all_phases) {
-        const auto [start_s, end_s] =
-            phase == Phase::cruise ? static_cast<TimeInterval>(part) : TimeInterval{0.0, flown_s[phase]};
+        const auto [start_s, end_s] = phase == Phase::cruise
+                                          ? static_cast<TimeInterval>(part)
+                                          : TimeInterval{0.0, std::min(whole_s[phase], flown_s[phase])};
         const auto flown = phase == Phase::cruise ? cruise : TimeInterval{start_s, end_s};
         const double pace = flown.duration_s() / (end_s - start_s);  // turns at the ends take more time, or less
         for (auto segment : clip_to_interval(whole, {phase, start_s, end_s})) {
@@ -53,6 +55,12 @@ Schedule schedule_of(const Schedule& whole, const CruisePart& part, const TimeIn
         }
     }
     return schedule;
+}
+
+/// Adds the texts that are not among the others, with a prefix.
+void add_others(const std::vector<std::string>& texts, const std::string& prefix, std::vector<std::string>& others) {
+    for (const auto& text : texts)
+        if (std::ranges::find(others, text) == others.end()) others.push_back(prefix + text);
 }
 
 /// Divides a mission. Positions are times [s] of the cruise flown at once.
@@ -176,7 +184,15 @@ class PackDivider {
         setup.duration_s[Phase::cruise] = part.duration_s();
         setup.duration_is_stated[Phase::cruise] = true;
         const auto cruise = make_path(setup, part);
-        schedule = schedule_of(schedule, part, cruise, setup.duration_s);
+        if (plan_ != nullptr) set_ends(setup);
+        schedule = schedule_of(schedule, least_.setup.duration_s, part, cruise, setup.duration_s);
+    }
+
+    /// Makes take-off and landing those of the heights at which the path of a part begins and ends.
+    static void set_ends(MissionSetup& setup) {
+        const auto ends = takeoff_and_landing(setup);
+        setup.duration_s = ends.duration_s;
+        add_others(ends.uncertain, "", setup.uncertain);
     }
 
     /// Makes the path of a part; the times of the flight's cruise between which the part is flown.
@@ -314,6 +330,7 @@ void add(PackFlight& flight, PackFlights& all) {
     const double in_air_s = total.duration_s - all.on_ground_s;
     all.on_ground_s += pause_s;
     all.suffice = all.suffice && summary.keeps_reserve;
+    add_others(setup_of(flight.mission).uncertain, fmt::format("pack {}: ", flight.pack), total.uncertain);
     total.duration_s = flight.start_s + summary.duration_s;
     total.mechanical_energy_wh += summary.mechanical_energy_wh;
     total.compute_energy_wh += summary.compute_energy_wh;

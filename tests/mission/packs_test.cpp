@@ -5,6 +5,7 @@
 #include "mission/mission_file.h"
 #include "mission/plan.h"
 #include "mission/sampled_flights.h"
+#include "path/plan_writer.h"
 
 #include <cmath>
 #include <string>
@@ -218,6 +219,48 @@ from_deg = 30
     EXPECT_NEAR(turns, 0.0, 1.0);
     EXPECT_NEAR(hold_s, 0.0, 1e-6);
     EXPECT_NEAR(height_m, 0.0, 1e-6);
+}
+
+/// What the file of a flight's plan costs, read as a mission.
+double soc_of_written(const PackFlight& flight, const std::string& keys) {
+    const auto& setup = setup_of(flight.mission);
+    const auto& plan = *setup.cruise_path->plan;
+    const auto file = test::scratch_dir() / fmt::format("pack-{}.plan", flight.pack);
+    const auto written = write_plan(
+        {setup.name, drawn_path(plan), *plan.origin, setup.mechanical->is_rotorcraft, *plan.turns, plan.wind},
+        path::PlanFormat::qgroundcontrol);
+    test::write_text(file, written.text);
+    const auto again = read(fmt::format("{}[path]\nairspeed_m_per_s = 13\nwaypoints = '{}'\n", keys, file.string()));
+    return *simulate(std::get<Mission>(again)).summary.final_soc_percent;
+}
+
+/// A path that begins at 400 m above home and ends at 20 m: its packs fly home at 400 m, and the landing of each was
+/// counted from 20 m. The model's flights climbed to 120 m in 30 s, and descend at 2.4 m/s.
+TEST(PackFlights, TakeOffAndLandByTheHeightsOfTheirOwnEnds) {
+    std::string plan = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t47\t8\t0\t1\n";
+    const auto add = [&](int command, double latitude_deg, double altitude_m) {
+        plan += fmt::format("1\t0\t3\t{}\t0\t0\t0\t0\t{}\t8\t{}\t1\n", command, latitude_deg, altitude_m);
+    };
+    add(22, 47.0, 400.0);
+    for (const double latitude_deg : {47.03, 47.0, 47.03, 47.0, 47.03}) add(16, latitude_deg, 400.0);
+    add(16, 47.0, 20.0);
+    const auto file = test::scratch_dir() / "high.waypoints";
+    test::write_text(file, plan);
+    const std::string keys =
+        "mechanical = \"fits/mechanical/synthetic-wing.toml\"\nbattery = "
+        "\"fits/battery/synthetic-3s.toml\"\ncapacity_ah = 1\nreserve_soc_percent = 20\n";
+    const auto all = fly_packs(read(keys + "[packs]\ncount = 9\nchange_s = 60\n[path]\nairspeed_m_per_s = 13\n" +
+                                    fmt::format("waypoints = '{}'\n", file.string())));
+    ASSERT_TRUE(all.suffice) << describe(all);
+    ASSERT_GT(all.flights.size(), 1U);
+    for (const auto& flight : all.flights) {
+        const auto& duration_s = setup_of(flight.mission).duration_s;
+        EXPECT_NEAR(duration_s[Phase::takeoff], 30.0 + 280.0 / 4.0, 1e-6);
+        EXPECT_NEAR(duration_s[Phase::landing], flight.return_from.empty() ? 50.0 : 50.0 + 280.0 / 2.4, 1e-6);
+        const auto& summary = flight.flown.simulation.summary;
+        EXPECT_GE(*summary.final_soc_percent, 20.0);
+        EXPECT_NEAR(soc_of_written(flight, keys), *summary.final_soc_percent, 0.01);
+    }
 }
 
 TEST(PackFlights, AreTheFewestAndShareTheChargeEvenly) {

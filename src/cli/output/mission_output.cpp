@@ -269,6 +269,9 @@ Keyed<Keyed<double>> run_values(const compute::Configuration& run, const compute
 
 void print_packs(const StageCall& call, const mission::PackFlights& all, const std::string& csv,
                  const ScreenTable& table) {
+    for (const auto& text : all.total.uncertain)  // of single flights; warn_of_setup() warned of the mission's
+        if (std::ranges::find(all.setup.uncertain, text) == all.setup.uncertain.end())
+            warn(call, fmt::format("{}: {}", all.setup.name, text));
     if (all.suffice) write_csv_result(call, csv, table);
     if (call.json) print_json(call, all);
     if (!all.suffice) throw NoResultError(describe(all));

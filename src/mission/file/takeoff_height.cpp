@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -73,9 +74,10 @@ void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& missi
         *defaults.altitude_m, flown.heights->high_m));
 }
 
-void set_takeoff_and_landing(MissionSetup& mission) {
+TakeoffAndLanding takeoff_and_landing(const MissionSetup& mission) {
+    TakeoffAndLanding ends{mission.duration_s};
     const auto& plan = *mission.cruise_path->plan;
-    if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return;
+    if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return ends;
     PerPhase<double> height_m;
     height_m[Phase::takeoff] = height_m[Phase::landing] = *plan.origin->altitude_m;
     for (const auto& element : plan.path.elements) height_m[Phase::landing] += element.altitude_change_m;
@@ -85,7 +87,7 @@ void set_takeoff_and_landing(MissionSetup& mission) {
     for (const auto phase : {Phase::takeoff, Phase::landing}) {
         const auto& model = mission.mechanical->phases[phase];
         const double mean_w = mean_power_w(model);
-        auto& duration_s = mission.duration_s[phase];
+        auto& duration_s = ends.duration_s[phase];
         if (mission.duration_is_stated[phase]) {
             energy_j += mean_w * duration_s;
             continue;
@@ -93,11 +95,11 @@ void set_takeoff_and_landing(MissionSetup& mission) {
         const auto flown = with_heights(model);
         const double to_m = height_m[phase];
         if (to_m < -height_error_m)
-            mission.uncertain.push_back(fmt::format("{}: the path {} {:.0f} m below home", phase_word(phase),
-                                                    phase == Phase::takeoff ? "begins" : "ends", -to_m));
+            ends.uncertain.push_back(fmt::format("{}: the path {} {:.0f} m below home", phase_word(phase),
+                                                 phase == Phase::takeoff ? "begins" : "ends", -to_m));
         duration_s = duration_at_height_s(flown, to_m);
         if (std::abs(duration_s - model.duration_s) >= noted_s)
-            mission.notes.push_back(duration_note(phase, to_m, duration_s, model));
+            ends.notes.push_back(duration_note(phase, to_m, duration_s, model));
         energy_j += mean_w * duration_s;
         uncertain_j += mean_w * std::max(0.0, duration_s - duration_at_height_s(flown, flown.heights->high_m));
         if (model.heights) continue;
@@ -105,15 +107,23 @@ void set_takeoff_and_landing(MissionSetup& mission) {
         uncertain_j += mean_w * model.duration_s * std::clamp(to_m / assumed_m, 0.0, 1.0);
     }
     if (!is_known)
-        mission.notes.push_back(fmt::format(
+        ends.notes.push_back(fmt::format(
             "take-off and landing: the model does not state how high its flights climbed, {:.0f} m are assumed: fit it "
             "again",
             assumed_m));
     const double percent = units::percentage(uncertain_j, energy_j);
-    if (percent < uncertain_percent) return;
-    mission.uncertain.push_back(fmt::format(
+    if (percent < uncertain_percent) return ends;
+    ends.uncertain.push_back(fmt::format(
         "{:.0f} % of the energy is of a climb and a descent that {}", percent,
         is_known ? "are higher than the model's flights flew" : "the model's file may not cover: fit it again"));
+    return ends;
+}
+
+void set_takeoff_and_landing(MissionSetup& mission) {
+    auto ends = takeoff_and_landing(mission);
+    mission.duration_s = ends.duration_s;
+    std::ranges::move(ends.notes, std::back_inserter(mission.notes));
+    std::ranges::move(ends.uncertain, std::back_inserter(mission.uncertain));
 }
 
 }  // namespace flightwatt::mission

@@ -3,6 +3,9 @@
 #include "mission/mission.h"
 #include "path/path_entries.h"
 
+#include <string>
+#include <vector>
+
 namespace flightwatt::mission {
 
 /// Returns the rates of a model's flights with which changes of height above one place are flown.
@@ -15,8 +18,18 @@ void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rat
 /// the path begins higher than the model's flights climbed.
 void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission);
 
-/// Sets how long take-off and landing last by the altitudes at the ends of the mission's path, if these are known to be
-/// above the ground and the mission does not state the duration. Notes it, and whether it makes the result uncertain.
+/// How long take-off and landing last.
+struct TakeoffAndLanding {
+    PerPhase<double> duration_s;
+    std::vector<std::string> notes = {};
+    std::vector<std::string> uncertain = {};  ///< as MissionSetup::uncertain
+};
+
+/// Returns how long take-off and landing last by the altitudes at the ends of the mission's path, if these are known to
+/// be above the ground and the mission does not state the duration; else the durations of the mission.
+TakeoffAndLanding takeoff_and_landing(const MissionSetup& mission);
+
+/// Sets these durations, and adds the notes to those of the mission.
 void set_takeoff_and_landing(MissionSetup& mission);
 
 }  // namespace flightwatt::mission
