@@ -181,7 +181,7 @@ int plan_packs(const cli::StageCall& call, const PlanArguments& arguments, const
 }
 
 int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const MissionFile& file) {
-    const auto mission = file.read();
+    const auto mission = file.read({.counts_written_heights = arguments.packs});
     if (setup_of(mission).packs) return plan_packs(call, arguments, file, mission);
     if (arguments.packs)
         throw InputError({setup_of(mission).file}, "the mission has no [packs]",

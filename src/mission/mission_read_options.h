@@ -22,6 +22,7 @@ struct MissionReadOptions {
     std::optional<double> return_after_m = {};
     std::optional<double> path_times = {};
     std::optional<path::SurveyLayout> survey = {};  ///< of a path whose lines are chosen: this choice
+    bool counts_written_heights = false;  ///< take-off and landing are of the heights that a written plan would state
 };
 
 }  // namespace flightwatt::mission

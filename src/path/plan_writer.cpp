@@ -18,8 +18,7 @@
 namespace flightwatt::path {
 namespace {
 
-constexpr double written_place_m = 1e-3;     // to which places are the same
-constexpr double default_altitude_m = 50.0;  // of QGroundControl, above home
+constexpr double written_place_m = 1e-3;  // to which places are the same
 constexpr double default_hover_m_per_s = 5.0, default_cruise_m_per_s = 15.0;
 
 /// Where the aircraft flies to, and what it does there.

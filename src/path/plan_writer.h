@@ -25,6 +25,9 @@ struct WrittenPlan {
     std::vector<std::string> notes;  ///< what is a default of the format, or is not written
 };
 
+/// Altitude above the ground that is written for a path without one, QGroundControl's default.
+inline constexpr double default_altitude_m = 50.0;
+
 /// Name of the block with the path in a flight plan of Paparazzi.
 inline constexpr auto written_block = "Flight";
 

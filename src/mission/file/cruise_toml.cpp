@@ -12,6 +12,7 @@
 #include "path/plan_blocks.h"
 #include "path/plan_fence.h"
 #include "path/plan_files.h"
+#include "path/plan_writer.h"
 #include "path/trajectory.h"
 #include "path/waypoint_files.h"
 
@@ -420,6 +421,23 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
     return limits;
 }
 
+/// Takes altitudes of which it is not known what they are above as a written plan states them: above home.
+void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::PathDefaults& defaults,
+                             MissionSetup& mission) {
+    const bool has_altitude =
+        defaults.altitude_m || std::ranges::any_of(entries, [](const auto& entry) { return !!entry.altitude_m; });
+    if (!has_altitude) {
+        defaults.altitude_m = defaults.ground_m + path::default_altitude_m;
+        mission.notes.push_back(
+            fmt::format("path: no altitude is stated: {} m above the ground", path::default_altitude_m));
+    } else if (!defaults.is_above_ground) {
+        mission.notes.emplace_back(
+            "path: what its altitudes are above is not stated: the files of the packs have them above home, and climbs "
+            "and descents are counted from there: check them");
+    }
+    defaults.is_above_ground = true;
+}
+
 /// The path as it is drawn, and where it is.
 path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
@@ -433,6 +451,7 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
     auto defaults = read_defaults(table, mission);
     auto planned = read_entries(table, defaults, mission);
     auto& entries = planned.entries;
+    if (reading.counts_written_heights) take_heights_as_written(entries, defaults, mission);
     note_unknown_height(defaults, mission);
     if (mission.mechanical) defaults.rates_on_spot = flown_rates(*mission.mechanical);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)

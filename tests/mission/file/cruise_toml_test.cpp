@@ -361,6 +361,30 @@ TEST(PathToml, ClimbsToThePlansAltitudeAndDescendsFromIt) {
     EXPECT_THAT(at(50.0, 50.0, "", "wing.toml").notes, Contains(HasSubstr("120 m are assumed")));
 }
 
+/// Files of packs state altitudes above home where the mission does not say so: they climbed higher than was planned.
+TEST(PathToml, CountsTheHeightsThatTheFilesOfPacksState) {
+    const auto folder = folder_with_heights();
+    const auto as_written = [&](const std::string& keys, bool is_written = true) {
+        return read(folder, "heights.toml",
+                    "[path]\nairspeed_m_per_s = 13\nstart = { latitude_deg = 47, longitude_deg = 8 }\n" + keys,
+                    {.counts_written_heights = is_written})
+            .setup;
+    };
+    const std::string high =
+        "altitude_m = 90\nleg = [{ length_m = 2600, course_deg = 0 }, { length_m = 2600, "
+        "course_deg = 180, altitude_m = 70 }]\n";
+    const auto unknown = as_written(high, false);
+    const auto written = as_written(high);
+    EXPECT_NEAR(written.duration_s[Phase::takeoff] - unknown.duration_s[Phase::takeoff], 40.0 / 4.0, 1e-9);
+    EXPECT_NEAR(written.duration_s[Phase::landing] - unknown.duration_s[Phase::landing], 20.0 / 2.0, 1e-9);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("what its altitudes are above is not stated")));
+    EXPECT_THAT(unknown.uncertain, Contains(HasSubstr("above the ground is not stated")));
+    EXPECT_THAT(written.uncertain, Not(Contains(HasSubstr("is not stated"))));
+    const auto without = as_written("leg = [{ length_m = 2600, course_deg = 0 }]\n");
+    EXPECT_EQ(without.cruise_path->plan->origin->altitude_m, std::optional(50.0));
+    EXPECT_THAT(without.notes, Contains("path: no altitude is stated: 50 m above the ground"));
+}
+
 TEST(PathToml, ChangesItsHeightAboveOnePlaceAtTheModelsRates) {
     const auto folder = folder_with_heights();
     const auto circling = [&](double last_m) {
