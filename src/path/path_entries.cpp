@@ -54,7 +54,8 @@ class PathBuilder {
     std::optional<PathOrigin> origin() const {
         const auto place = origin_ ? origin_ : defaults_.local_origin;
         if (!place) return std::nullopt;
-        PathOrigin origin{*place, start_, defaults_.ground_m, start_altitude_m_, defaults_.is_above_ground};
+        PathOrigin origin{
+            *place, start_, defaults_.ground_m, start_altitude_m_, defaults_.is_above_ground, defaults_.is_above_sea};
         if (origin.altitude_m) *origin.altitude_m -= origin.ground_m;
         return origin;
     }

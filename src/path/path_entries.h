@@ -74,6 +74,7 @@ struct PathDefaults {
     std::optional<GeodeticPosition> local_origin;  ///< of places in metres, if it is known
     double ground_m = 0.0;                         ///< above the sea, where the altitudes are above the sea
     bool is_above_ground = false;                  ///< what the altitudes are above is known
+    bool is_above_sea = false;                     ///< altitudes are above the sea, and ground_m is unknown
     bool starts_at_first_place = false;            ///< the path starts at the first place; for circles at their edge
     bool return_to_start = false;
     Location where;

@@ -126,19 +126,22 @@ class StopList {
 double signed_radius_m(const Circles& circles) { return circles.to_right ? circles.radius_m : -circles.radius_m; }
 
 // MAV_FRAME
-constexpr int above_home = 3, of_no_place = 2;
+constexpr int above_sea = 0, above_home = 3, of_no_place = 2;
 
 /// A command of MAVLink; a parameter that is not given is null in JSON, and 0 in lines.
 struct Item {
     int command = 0;
     std::array<std::optional<double>, 7> parameters = {};
-    bool has_place() const { return command != change_speed; }
+    int frame = of_no_place;
+    bool has_place() const { return frame != of_no_place; }
 };
 
 std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
     const auto item = [&](int command, const LocalPosition& at, double altitude_m) {
         const auto place = to_geodetic(plan.origin.start + at, plan.origin.place);
-        return Item{command, {0.0, 0.0, 0.0, std::nullopt, place.latitude_deg, place.longitude_deg, altitude_m}};
+        return Item{command,
+                    {0.0, 0.0, 0.0, std::nullopt, place.latitude_deg, place.longitude_deg, altitude_m},
+                    plan.origin.is_above_sea ? above_sea : above_home};
     };
     std::vector<Item> items{item(nav_takeoff, {}, list.start_altitude_m())};
     constexpr double pitch_deg = 15.0;
@@ -154,22 +157,26 @@ std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
         if (stop.circles) parameters[2] = signed_radius_m(*stop.circles);
     }
     items.push_back(item(nav_land, list.end(), 0.0));
+    items.back().frame = above_home;
     return items;
 }
 
 std::string qgc_text(const PlanToWrite& plan, const StopList& list) {
     using Ordered = nlohmann::ordered_json;
+    constexpr int mixed_mode = 0, relative_mode = 1, absolute_mode = 2;  // of QGroundControl
     auto items = Ordered::array();
     for (const auto& item : items_of(plan, list)) {
         auto parameters = Ordered::array();
         for (const auto& value : item.parameters) parameters.push_back(value ? Ordered(*value) : Ordered());
         Ordered json;
         if (item.has_place())
-            json = {{"AMSLAltAboveTerrain", nullptr}, {"Altitude", *item.parameters.back()}, {"AltitudeMode", 1}};
+            json = {{"AMSLAltAboveTerrain", nullptr},
+                    {"Altitude", *item.parameters.back()},
+                    {"AltitudeMode", item.frame == above_sea ? absolute_mode : relative_mode}};
         json.update({{"autoContinue", true},
                      {"command", item.command},
                      {"doJumpId", items.size() + 1},
-                     {"frame", item.has_place() ? above_home : of_no_place},
+                     {"frame", item.frame},
                      {"params", parameters},
                      {"type", "SimpleItem"}});
         items.push_back(std::move(json));
@@ -179,7 +186,7 @@ std::string qgc_text(const PlanToWrite& plan, const StopList& list) {
     constexpr int fixed_wing = 1, quadrotor = 2;  // MAV_TYPE
     const Ordered mission{{"cruiseSpeed", plan.is_rotorcraft ? default_cruise_m_per_s : airspeed},
                           {"firmwareType", 0},  // any
-                          {"globalPlanAltitudeMode", 1},
+                          {"globalPlanAltitudeMode", plan.origin.is_above_sea ? mixed_mode : relative_mode},
                           {"hoverSpeed", plan.is_rotorcraft ? airspeed : default_hover_m_per_s},
                           {"items", items},
                           {"plannedHomePosition", {home.latitude_deg, home.longitude_deg, plan.origin.ground_m}},
@@ -201,7 +208,7 @@ std::string wpl_text(const PlanToWrite& plan, const StopList& list) {
                             home.latitude_deg, home.longitude_deg, plan.origin.ground_m);
     int number = 0;
     for (const auto& item : items_of(plan, list)) {
-        text += fmt::format("{}\t0\t{}\t{}", ++number, above_home, item.command);
+        text += fmt::format("{}\t0\t{}\t{}", ++number, item.has_place() ? item.frame : above_home, item.command);
         for (const auto& value : item.parameters) text += fmt::format("\t{:.12f}", value.value_or(0.0));
         text += "\t1\n";
     }

@@ -254,6 +254,7 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
         if (is_missing) plan.missing.emplace_back(text);
     };
     plan.is_above_home = modes.contains("relativeToGround");
+    plan.is_above_sea = modes.contains("absolute");
     if (plan.is_above_home) report("altitudes above the ground are flown as above that of its start", true);
     if (ignored_m.size() > 1 || ignored_m.count(0.0) != ignored_m.size())
         report("altitudes that its altitudeMode clamps to the ground are not flown", ignored_m.size() > 1);

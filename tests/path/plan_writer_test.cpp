@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "helpers/test_paths.h"
 #include "path/path_entries.h"
+#include "path/plans/json_text.h"
 #include "path/waypoint_files.h"
 
 #include <cmath>
@@ -141,6 +142,25 @@ TEST(PlanWriter, KeepsAltitudesAboveTheSea) {
         << write_plan(plan, PlanFormat::flight_plan).text;
     EXPECT_NE(write_plan(plan, PlanFormat::ardupilot).text.find("\t185.000000\t1\n"), std::string::npos);
     EXPECT_NE(write_plan(plan, PlanFormat::ardupilot).text.find("\t60.000000000000\t1\n"), std::string::npos);
+}
+
+/// 110 m above the sea were written as above home: at a field 60 m high they were flown 60 m higher.
+TEST(PlanWriter, WritesAltitudesAboveTheSeaAsSuchWhereTheHeightOfHomeIsUnknown) {
+    auto plan = flight();
+    plan.origin.is_above_sea = true;
+    const auto lines = write_plan(plan, PlanFormat::ardupilot).text;
+    EXPECT_NE(lines.find("\n1\t0\t0\t22\t"), std::string::npos) << "take-off\n" << lines;
+    EXPECT_NE(lines.find("\t0\t0\t16\t"), std::string::npos) << lines;
+    EXPECT_EQ(lines.find("\t0\t3\t16\t"), std::string::npos) << lines;
+    EXPECT_NE(lines.find("\t0\t3\t21\t"), std::string::npos) << "it lands at home\n" << lines;
+    const auto json = Json::parse(write_plan(plan, PlanFormat::qgroundcontrol).text).at("mission").at("items");
+    EXPECT_EQ(json.front().at("frame"), 0);
+    EXPECT_EQ(json.front().at("AltitudeMode"), 2);
+    EXPECT_EQ(json.back().at("frame"), 3);
+    EXPECT_EQ(json.back().at("AltitudeMode"), 1);
+    for (const auto format : {PlanFormat::qgroundcontrol, PlanFormat::ardupilot})
+        EXPECT_NEAR(read_again(plan, format).elements.at(2).altitude_change_m,
+                    plan.path.elements.at(2).altitude_change_m, 1e-6);
 }
 
 }  // namespace

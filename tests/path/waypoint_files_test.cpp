@@ -131,10 +131,12 @@ TEST(WaypointFiles, OfKmlHaveTheAltitudesOfItsMode) {
     EXPECT_EQ(above_sea.entries[1].altitude_m, 1330.0);
     EXPECT_FALSE(above_sea.entries[2].altitude_m);
     EXPECT_FALSE(above_sea.is_above_home);
+    EXPECT_TRUE(above_sea.is_above_sea);
     EXPECT_TRUE(above_sea.missing.empty());
     const auto above_ground = kml("relativeToGround", rises);
     EXPECT_EQ(above_ground.entries[1].altitude_m, 1330.0);
     EXPECT_TRUE(above_ground.is_above_home);
+    EXPECT_FALSE(above_ground.is_above_sea);
     const std::vector<std::string> ground{"altitudes above the ground are flown as above that of its start"};
     EXPECT_EQ(above_ground.missing, ground);
     const std::vector<std::string> clamped{"altitudes that its altitudeMode clamps to the ground are not flown"};

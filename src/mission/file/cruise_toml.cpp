@@ -311,11 +311,13 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
     }
     const auto file = named_file(path, "flight_plan");
     const auto text = read_file(file);
+    defaults.is_above_sea = true;
     try {
         const auto [origin, ground_m] = path::flight_plan_origin(text, file.string());
         defaults.local_origin = origin;
         defaults.ground_m = ground_m.value_or(0.0);
         defaults.is_above_ground = ground_m.has_value();
+        defaults.is_above_sea = !ground_m;
     } catch (const InputError&) {  // it states none: its places are metres alone
     }
     if (path.has("waypoint_order"))
@@ -343,6 +345,7 @@ path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaul
     auto& entries = plan.entries;
     defaults.starts_at_first_place = plan.starts_at_first_place;
     if (plan.is_above_home) defaults.is_above_ground = true;
+    if (plan.is_above_sea) defaults.is_above_sea = true;
     if (plan.starts_at_home && (defaults.start || defaults.geographic_start)) entries.erase(entries.begin());
     const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
     if (!defaults.altitude_m && first != entries.end()) defaults.altitude_m = first->altitude_m;
@@ -421,15 +424,21 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
     return limits;
 }
 
-/// Takes altitudes of which it is not known what they are above as a written plan states them: above home.
+/// Takes altitudes of which it is not known how high they are above home as a written plan states them: as those above
+/// home, or of a home at sea level.
 void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::PathDefaults& defaults,
                              MissionSetup& mission) {
     const bool has_altitude =
         defaults.altitude_m || std::ranges::any_of(entries, [](const auto& entry) { return !!entry.altitude_m; });
     if (!has_altitude) {
         defaults.altitude_m = defaults.ground_m + path::default_altitude_m;
+        defaults.is_above_sea = false;
         mission.notes.push_back(
             fmt::format("path: no altitude is stated: {} m above the ground", path::default_altitude_m));
+    } else if (defaults.is_above_sea) {
+        mission.notes.emplace_back(
+            "path: its altitudes are above the sea, and the height of home is not stated: the files of the packs have them "
+            "above the sea, and climbs and descents are counted from 0 m: state altitudes above home");
     } else if (!defaults.is_above_ground) {
         mission.notes.emplace_back(
             "path: what its altitudes are above is not stated: the files of the packs have them above home, and climbs "

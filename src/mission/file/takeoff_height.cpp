@@ -68,10 +68,12 @@ void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& missi
     if (!mission.mechanical || !defaults.altitude_m || defaults.is_above_ground) return;
     const auto flown = with_heights(mission.mechanical->phases[Phase::takeoff]);
     if (mission.duration_is_stated[Phase::takeoff] || *defaults.altitude_m <= flown.heights->high_m) return;
-    mission.uncertain.push_back(fmt::format(
-        "whether the {:.0f} m at its start are above the ground is not stated: take-off and landing are those of the "
-        "model's flights, of up to {:.0f} m",
-        *defaults.altitude_m, flown.heights->high_m));
+    const auto at_start = fmt::format("the {:.0f} m at its start are above", *defaults.altitude_m);
+    const auto finding = defaults.is_above_sea ? at_start + " the sea, and the height of home is not stated"
+                                               : "whether " + at_start + " the ground is not stated";
+    mission.uncertain.push_back(
+        fmt::format("{}: take-off and landing are those of the model's flights, of up to {:.0f} m", finding,
+                    flown.heights->high_m));
 }
 
 TakeoffAndLanding takeoff_and_landing(const MissionSetup& mission) {

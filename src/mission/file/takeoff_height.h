@@ -14,8 +14,8 @@ path::ClimbRates flown_rates(const mechanical::MechanicalModel& model);
 /// Notes the first change of height above one place that has its rate from the model.
 void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission);
 
-/// Notes that take-off and landing do not follow from altitudes of which a file does not state what they are above, where
-/// the path begins higher than the model's flights climbed.
+/// Notes that take-off and landing do not follow from altitudes of which a file does not state how high they are above
+/// home, where the path begins higher than the model's flights climbed.
 void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission);
 
 /// How long take-off and landing last.

@@ -324,6 +324,27 @@ TEST(PathToml, IsUncertainWhereItsHeightIsUnknownOrBelowHome) {
                 ElementsAre("take-off: the path begins 380 m below home", "landing: the path ends 380 m below home"));
 }
 
+/// The altitudes of an absolute KML were said to be above something that is not stated.
+TEST(PathToml, SaysThatAltitudesOfAKmlAreAboveTheSea) {
+    const auto folder = folder_with_heights();
+    write_text(folder / "a.kml",
+               "<kml><LineString><altitudeMode>absolute</altitudeMode><coordinates>8,47,285 8,47.02,285</coordinates>"
+               "</LineString></kml>");
+    const auto setup = [&](bool is_written) {
+        return read(folder, "heights.toml", "[path]\nairspeed_m_per_s = 13\nwaypoints = \"a.kml\"\n",
+                    {.counts_written_heights = is_written})
+            .setup;
+    };
+    EXPECT_THAT(
+        setup(false).uncertain,
+        ElementsAre("the 285 m at its start are above the sea, and the height of home is not stated: take-off and "
+                    "landing are those of the model's flights, of up to 60 m"));
+    const auto written = setup(true);
+    EXPECT_TRUE(written.cruise_path->plan->origin->is_above_sea);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("the files of the packs have them above the sea")));
+    EXPECT_NEAR(written.duration_s[Phase::takeoff] - setup(false).duration_s[Phase::takeoff], 235.0 / 4.0, 1e-9);
+}
+
 TEST(PathToml, IsUncertainWithThePlanOfAnotherKindOfVehicle) {
     const auto folder = path_folder();
     auto text = plan_at(50.0, 50.0);
