@@ -39,7 +39,8 @@ struct PlanEntries {
     std::optional<PlannedSpeed> speed = {};
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names; else of a wing
     PlanFence fence = {};
-    bool is_above_sea = false;  ///< altitudes are above the sea, and the height of home is not stated
+    std::optional<double> home_altitude_m = {};  ///< of home above the sea, where altitudes are above home
+    bool is_above_sea = false;                   ///< altitudes are above the sea, and the height of home is not stated
 };
 
 /// A block of a flight plan, read alone; or the whole mission of a plan in another format.

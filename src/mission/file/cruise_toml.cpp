@@ -468,6 +468,7 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
     path::PlannedPath plan;
     plan.path = build_path(entries, defaults);
     plan.origin = path_origin(entries, defaults);
+    if (plan.origin && planned.home_altitude_m) plan.origin->ground_m = *planned.home_altitude_m;
     note_rate_on_spot(plan.path, defaults.rates_on_spot, mission);
     if (plan.origin)
         for (const auto& note : fence_notes(planned.fence, plan.path, *plan.origin))

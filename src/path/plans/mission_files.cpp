@@ -143,6 +143,7 @@ class ItemReader {
         PlanEntries plan{
             std::move(path.entries),  path.below_ground, path.below_ground, true, starts_at_home, true, lands, speed_,
             mission_.is_of_multirotor};
+        plan.home_altitude_m = home_altitude_m_;
         for (const auto& [text, items] : reports_) {
             const auto more = items.names.size() - 1;
             plan.not_flown.push_back(

@@ -406,6 +406,15 @@ TEST(PathToml, CountsTheHeightsThatTheFilesOfPacksState) {
     EXPECT_THAT(without.notes, Contains("path: no altitude is stated: 50 m above the ground"));
 }
 
+/// Plans of packs had home at 0 m.
+TEST(PathToml, KeepsTheAltitudeOfAPlansHome) {
+    const auto folder = folder_with_heights();
+    write_text(folder / "q.plan", plan_at(50.0, 40.0));
+    const auto setup = read(folder, "heights.toml", "[path]\nwaypoints = \"q.plan\"\n").setup;
+    EXPECT_EQ(setup.cruise_path->plan->origin->ground_m, 100.0);
+    EXPECT_EQ(setup.cruise_path->plan->origin->altitude_m, std::optional(50.0));
+}
+
 TEST(PathToml, ChangesItsHeightAboveOnePlaceAtTheModelsRates) {
     const auto folder = folder_with_heights();
     const auto circling = [&](double last_m) {
