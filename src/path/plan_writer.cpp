@@ -136,6 +136,11 @@ struct Item {
     bool has_place() const { return frame != of_no_place; }
 };
 
+/// Whether a stop is a hold of a wing, which does not wait at waypoints.
+bool loiters_to_hold(const PlanToWrite& plan, const Stop& stop) {
+    return !plan.is_rotorcraft && !stop.circles && stop.hold_s > 0.0;
+}
+
 std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
     const auto item = [&](int command, const LocalPosition& at, double altitude_m) {
         const auto place = to_geodetic(plan.origin.start + at, plan.origin.place);
@@ -151,10 +156,13 @@ std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
         const double kind = plan.is_rotorcraft ? 1.0 : 0.0;  // multirotors have the ground speed alone
         if (stop.airspeed_m_per_s != std::exchange(airspeed, stop.airspeed_m_per_s))
             items.push_back({change_speed, {kind, stop.airspeed_m_per_s, -1.0, 0.0, 0.0, 0.0, 0.0}});
-        items.push_back(item(stop.circles ? nav_loiter_turns : nav_waypoint, stop.place, stop.altitude_m));
+        const bool loiters = loiters_to_hold(plan, stop);
+        const int command = stop.circles ? nav_loiter_turns : loiters ? nav_loiter_time : nav_waypoint;
+        items.push_back(item(command, stop.place, stop.altitude_m));
         auto& parameters = items.back().parameters;
         parameters[0] = stop.circles ? stop.circles->turns : stop.hold_s;
         if (stop.circles) parameters[2] = signed_radius_m(*stop.circles);
+        if (loiters) parameters[2] = plan.turns.radius_m.value_or(0.0);  // 0: the autopilot's
     }
     items.push_back(item(nav_land, list.end(), 0.0));
     items.back().frame = above_home;
@@ -354,6 +362,11 @@ std::string plan_ending(PlanFormat format) {
 WrittenPlan write_plan(const PlanToWrite& plan, PlanFormat format) {
     const StopList list(plan);
     WrittenPlan written{{}, list.notes};
+    const auto is_hold = [&](const Stop& stop) { return loiters_to_hold(plan, stop); };
+    if (format != PlanFormat::flight_plan && std::ranges::any_of(list.stops, is_hold))
+        written.notes.emplace_back(
+            "holds are written as circles for their time, as wings do not wait at waypoints; circles take more power "
+            "than the straight flight that was planned: simulate the written missions");
     if (format == PlanFormat::qgroundcontrol) {
         written.text = qgc_text(plan, list);
     } else if (format == PlanFormat::ardupilot) {

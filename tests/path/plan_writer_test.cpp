@@ -6,6 +6,7 @@
 #include "path/plans/json_text.h"
 #include "path/waypoint_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -34,15 +35,15 @@ PathEntry around(double east_m, double north_m, double altitude_m, double turns,
     return entry;
 }
 
-/// Lines that climb, two speeds, circles to both sides, one of them entered from within, and waits.
-PlanToWrite flight() {
+/// Lines that climb, two speeds, circles to both sides, one of them entered from within, and a wait.
+PlanToWrite flight(bool waits = true) {
     std::vector<PathEntry> entries{to(0, 400, 60),
                                    to(300, 400, 90),
                                    around(900, 700, 90, 3.25, 80),
                                    to(900, 1200, 90),
                                    around(900, 1150, 80, 2, -60),
                                    to(-200, 300, 70)};
-    entries[1].hold_s = 12.0;
+    if (waits) entries[1].hold_s = 12.0;
     entries[3].airspeed_m_per_s = 17.0;
     PathDefaults defaults;
     defaults.airspeed_m_per_s = 14.0;
@@ -102,7 +103,7 @@ TEST(PlanWriter, WritesWhatIsReadAgain) {
     for (const bool is_rotorcraft : {false, true})
         for (const auto format : formats) {
             SCOPED_TRACE(fmt::format("{} {}", plan_ending(format), is_rotorcraft));
-            auto plan = flight();
+            auto plan = flight(is_rotorcraft || format == PlanFormat::flight_plan);
             plan.is_rotorcraft = is_rotorcraft;
             const auto again = read_again(plan, format);
             ASSERT_EQ(again.elements.size(), plan.path.elements.size());
@@ -130,8 +131,30 @@ TEST(PlanWriter, StatesDefaultsOfTheFormat) {
     plan.origin.altitude_m.reset();
     for (const auto format : formats) {
         EXPECT_NE(write_plan(plan, format).notes.front().find("50 m above the ground"), std::string::npos);
-        EXPECT_EQ(write_plan(flight(), format).notes.size(), format == PlanFormat::flight_plan ? 1U : 0U);
+        EXPECT_EQ(write_plan(flight(false), format).notes.size(), format == PlanFormat::flight_plan ? 1U : 0U);
     }
+}
+
+/// Holds of wings were the time of a waypoint, which ArduPlane and PX4 ignore: the plan waited, the aircraft did not.
+TEST(PlanWriter, WritesHoldsOfWingsAsCirclesForTheirTime) {
+    for (const auto format : {PlanFormat::qgroundcontrol, PlanFormat::ardupilot}) {
+        SCOPED_TRACE(plan_ending(format));
+        const auto plan = flight();
+        EXPECT_NE(write_plan(plan, format).notes.front().find("holds are written as circles"), std::string::npos);
+        const auto again = read_again(plan, format).elements;
+        const auto is_hold = [](const PathElement& element) {
+            const bool circles = std::holds_alternative<Circles>(element.shape);
+            return circles && std::abs(length_m(element) - 12.0 * 14.0) < 1e-3;
+        };
+        EXPECT_EQ(std::ranges::count_if(again, is_hold), 1);
+        auto rotorcraft = plan;
+        rotorcraft.is_rotorcraft = true;
+        EXPECT_EQ(write_plan(rotorcraft, PlanFormat::ardupilot).notes.size(), 0U);
+    }
+    auto plan = flight();
+    plan.turns.radius_m = 45.0;
+    const auto text = write_plan(plan, PlanFormat::ardupilot).text;
+    EXPECT_NE(text.find("\t19\t12.000000000000\t0.000000000000\t45.000000000000\t"), std::string::npos) << text;
 }
 
 TEST(PlanWriter, KeepsAltitudesAboveTheSea) {
@@ -146,7 +169,7 @@ TEST(PlanWriter, KeepsAltitudesAboveTheSea) {
 
 /// 110 m above the sea were written as above home: at a field 60 m high they were flown 60 m higher.
 TEST(PlanWriter, WritesAltitudesAboveTheSeaAsSuchWhereTheHeightOfHomeIsUnknown) {
-    auto plan = flight();
+    auto plan = flight(false);
     plan.origin.is_above_sea = true;
     const auto lines = write_plan(plan, PlanFormat::ardupilot).text;
     EXPECT_NE(lines.find("\n1\t0\t0\t22\t"), std::string::npos) << "take-off\n" << lines;
@@ -159,8 +182,8 @@ TEST(PlanWriter, WritesAltitudesAboveTheSeaAsSuchWhereTheHeightOfHomeIsUnknown) 
     EXPECT_EQ(json.back().at("frame"), 3);
     EXPECT_EQ(json.back().at("AltitudeMode"), 1);
     for (const auto format : {PlanFormat::qgroundcontrol, PlanFormat::ardupilot})
-        EXPECT_NEAR(read_again(plan, format).elements.at(2).altitude_change_m,
-                    plan.path.elements.at(2).altitude_change_m, 1e-6);
+        EXPECT_NEAR(read_again(plan, format).elements.at(1).altitude_change_m,
+                    plan.path.elements.at(1).altitude_change_m, 1e-6);
 }
 
 }  // namespace

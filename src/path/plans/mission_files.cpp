@@ -84,7 +84,7 @@ class ItemReader {
                 report(item, "a spline is flown as a straight line");
                 [[fallthrough]];
             case nav_waypoint:
-                return fly_to(item, parameters[0]);
+                return fly_to(item, waypoint_hold_s(item));
             case nav_delay:
                 return hold(item, parameters[0]);
             case nav_takeoff:
@@ -216,6 +216,15 @@ class ItemReader {
         if (hold_s > 0.0) entry.hold_s = hold_s;
         if (!entry.geographic && !entry.hold_s) return report_missing(item, "there is no place: not flown");
         entries_.push_back(entry);
+    }
+
+    /// How long the aircraft waits at a waypoint: wings do not.
+    double waypoint_hold_s(const MissionItem& item) {
+        const double hold_s = item.parameters[0];
+        if (!(hold_s > 0.0) || settings_.is_rotorcraft || mission_.is_of_multirotor.value_or(false)) return hold_s;
+        report(item,
+               "the hold is not flown, as wings do not wait at waypoints: circles for a time are NAV_LOITER_TIME");
+        return 0.0;
     }
 
     void fly_level_to(const MissionItem& item) {

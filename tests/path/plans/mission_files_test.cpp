@@ -33,7 +33,7 @@ TEST(MissionFiles, FlyWaypointsInEitherFrame) {
     const auto text =
         qgc(item(22, 3, "15, 0, 0, null, 0, 0, 50") + "," + item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," +
             item(16, 0, "5, 0, 0, null, 47.002, 8.0, 170") + "," + item(20, 2, "0, 0, 0, 0, 0, 0, 0"));
-    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    const auto plan = parse_qgc_plan(text, "q.plan", {.radius_m = {}, .is_rotorcraft = true});
     ASSERT_EQ(plan.entries.size(), 4U);
     EXPECT_DOUBLE_EQ(plan.entries[0].geographic->latitude_deg, 47.0);
     EXPECT_EQ(plan.entries[0].altitude_m, std::optional(50.0));
@@ -43,6 +43,18 @@ TEST(MissionFiles, FlyWaypointsInEitherFrame) {
     EXPECT_NEAR(parse_plan(text, "q.plan", {}).front().length_m, 4.0 * 111.18,
                 0.5);  // 0.001 degrees of latitude at 47 degrees
     EXPECT_TRUE(plan.not_flown.empty());
+}
+
+/// ArduPlane and PX4 ignore the time of a waypoint for wings: 10 min of it were counted.
+TEST(MissionFiles, OfWingsDoNotWaitAtWaypoints) {
+    auto text = qgc(item(16, 3, "600, 0, 0, null, 47.001, 8.0, 60"));
+    const auto wing = parse_qgc_plan(text, "q.plan", {});
+    EXPECT_FALSE(wing.entries.back().hold_s);
+    EXPECT_EQ(wing.not_flown, std::vector<std::string>{"item 1: the hold is not flown, as wings do not wait at "
+                                                       "waypoints: circles for a time are NAV_LOITER_TIME"});
+    EXPECT_TRUE(wing.missing.empty());
+    text.insert(text.find("\"plannedHome"), "\"vehicleType\": 2, ");
+    EXPECT_EQ(parse_qgc_plan(text, "q.plan", {}).entries.back().hold_s, std::optional(600.0)) << "of a multirotor";
 }
 
 TEST(MissionFiles, OfAVtolStateThatHoverAfterATransitionIsNotFlown) {
