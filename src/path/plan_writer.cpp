@@ -367,6 +367,10 @@ WrittenPlan write_plan(const PlanToWrite& plan, PlanFormat format) {
         written.notes.emplace_back(
             "holds are written as circles for their time, as wings do not wait at waypoints; circles take more power "
             "than the straight flight that was planned: simulate the written missions");
+    const auto has_circles = [](const Stop& stop) { return stop.circles.has_value(); };
+    if (format == PlanFormat::qgroundcontrol && std::ranges::any_of(list.stops, has_circles))
+        written.notes.emplace_back(
+            "circles are written as turns (NAV_LOITER_TURNS), with which PX4 refuses the plan: fly it with ArduPilot");
     if (format == PlanFormat::qgroundcontrol) {
         written.text = qgc_text(plan, list);
     } else if (format == PlanFormat::ardupilot) {

@@ -131,8 +131,10 @@ TEST(PlanWriter, StatesDefaultsOfTheFormat) {
     plan.origin.altitude_m.reset();
     for (const auto format : formats) {
         EXPECT_NE(write_plan(plan, format).notes.front().find("50 m above the ground"), std::string::npos);
-        EXPECT_EQ(write_plan(flight(false), format).notes.size(), format == PlanFormat::flight_plan ? 1U : 0U);
+        EXPECT_EQ(write_plan(flight(false), format).notes.size(), format == PlanFormat::ardupilot ? 0U : 1U);
     }
+    EXPECT_NE(write_plan(flight(false), PlanFormat::qgroundcontrol).notes.front().find("PX4 refuses"),
+              std::string::npos);
 }
 
 /// Holds of wings were the time of a waypoint, which ArduPlane and PX4 ignore: the plan waited, the aircraft did not.
