@@ -324,8 +324,8 @@ TEST(PathToml, IsUncertainWhereItsHeightIsUnknownOrBelowHome) {
                 ElementsAre("take-off: the path begins 380 m below home", "landing: the path ends 380 m below home"));
 }
 
-/// The altitudes of an absolute KML were said to be above something that is not stated.
-TEST(PathToml, SaysThatAltitudesOfAKmlAreAboveTheSea) {
+/// The altitudes of an absolute KML were of an unknown reference in the warning.
+TEST(PathToml, WarnsThatAltitudesOfAKmlAreAboveTheSea) {
     const auto folder = folder_with_heights();
     write_text(folder / "a.kml",
                "<kml><LineString><altitudeMode>absolute</altitudeMode><coordinates>8,47,285 8,47.02,285</coordinates>"
@@ -382,7 +382,7 @@ TEST(PathToml, ClimbsToThePlansAltitudeAndDescendsFromIt) {
     EXPECT_THAT(at(50.0, 50.0, "", "wing.toml").notes, Contains(HasSubstr("120 m are assumed")));
 }
 
-/// Files of packs state altitudes above home where the mission does not say so: they climbed higher than was planned.
+/// Files of packs state altitudes above home where the mission does not state it: they climbed higher than was planned.
 TEST(PathToml, CountsTheHeightsThatTheFilesOfPacksState) {
     const auto folder = folder_with_heights();
     const auto as_written = [&](const std::string& keys, bool is_written = true) {
