@@ -27,8 +27,7 @@ struct Places {
     std::vector<double> north_m;
 };
 
-/// Those of positions in metres or in degrees, which a sphere converts within 1 %. Latitude and longitude 0 are
-/// left out: the receiver had no fix.
+/// Those of positions in metres or in degrees, which a sphere converts within 1 %.
 Places places_of(const flight::FlightData& data) {
     const bool is_local = !data.east_m.empty() && !data.north_m.empty();
     const auto& east = is_local ? data.east_m : data.longitude_deg;
@@ -38,7 +37,6 @@ Places places_of(const flight::FlightData& data) {
     std::optional<double> parallel;
     Places places;
     for (std::size_t i = 0; i < norths.size(); ++i) {
-        if (!is_local && east.value[i] == 0.0 && norths[i] == 0.0) continue;
         if (!parallel)
             parallel = is_local ? 1.0 : units::metre_per_degree * std::cos(norths[i] / units::degree_per_rad);
         places.time_s.push_back(east.time_s[i]);
@@ -48,23 +46,15 @@ Places places_of(const flight::FlightData& data) {
     return places;
 }
 
-/// The largest distance from the first place between two times; places that no aircraft reaches from the last one are
-/// left out. std::nullopt without any.
+/// The largest distance from the first place between two times; std::nullopt without any.
 std::optional<double> farthest_m(const Places& places, double start_s, double end_s) {
-    constexpr double max_m_per_s = 100.0;
-    constexpr double position_error_m = 50.0;
     std::optional<std::size_t> first;
-    std::size_t last = 0;
     double farthest = 0.0;
     for (std::size_t i = 0; i < places.time_s.size(); ++i) {
         if (places.time_s[i] < start_s || places.time_s[i] > end_s) continue;
-        if (!first) first = last = i;
-        const auto distance_m = [&](std::size_t from) {
-            return std::hypot(places.east_m[i] - places.east_m[from], places.north_m[i] - places.north_m[from]);
-        };
-        if (distance_m(last) > position_error_m + max_m_per_s * (places.time_s[i] - places.time_s[last])) continue;
-        last = i;
-        farthest = std::max(farthest, distance_m(*first));
+        if (!first) first = i;
+        farthest = std::max(
+            farthest, std::hypot(places.east_m[i] - places.east_m[*first], places.north_m[i] - places.north_m[*first]));
     }
     return first ? std::optional(farthest) : std::nullopt;
 }

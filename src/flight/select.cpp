@@ -6,6 +6,7 @@
 #include "flight/select/device_check.h"
 #include "flight/select/device_sum.h"
 #include "flight/select/outliers.h"
+#include "flight/select/positions.h"
 #include "flight/select/power.h"
 #include "flight/select/supply.h"
 #include "flight/select/throttle.h"
@@ -170,6 +171,7 @@ FlightData select_tracks(const FlightSeries& logged) {
     for (const auto& [name, member] : track_members())
         if (std::ranges::find(with_own_rule, member) == std::end(with_own_rule))
             data.*member = first_that_varies(series, name);
+    remove_unreachable_positions(data);
     data.other_altitudes = other_altitudes(series, data.altitude_m);
     data.ground_speed_m_per_s = first_of(series, "ground_speed_m_per_s");
     if (is_constant(data.airspeed_m_per_s))  // there is no sensor

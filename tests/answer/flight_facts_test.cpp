@@ -50,14 +50,6 @@ TEST(FlightFacts, CountTheDistanceFromWhereTheFlightBegan) {
     EXPECT_NEAR(flight_facts(flown_places()).front().farthest_m.value(), 500.0, 1.0);
 }
 
-TEST(FlightFacts, LeaveOutPlacesThatNoAircraftReaches) {
-    auto loaded = flown_places();
-    loaded.data.latitude_deg.value[150] += 3000.0 / 111195.0;
-    for (std::size_t second = 170; second < 174; ++second)
-        loaded.data.latitude_deg.value[second] = loaded.data.longitude_deg.value[second] = 0.0;
-    EXPECT_NEAR(flight_facts(loaded).front().farthest_m.value(), 490.0, 1.0);
-}
-
 TEST(MeanGroundSpeed, WeighsCruisesByTheirDuration) {
     EXPECT_NEAR(mean_ground_speed_m_per_s({{"a", 100.0, 10.0}, {"b", 300.0, 14.0}, {"c", 900.0}}).value(), 13.0, 1e-12);
     EXPECT_FALSE(mean_ground_speed_m_per_s({{"a", 100.0}}));
