@@ -185,11 +185,13 @@ FlownTrack flown_track(const flight::FlightData& data, const flight::FlightPhase
     const auto power = resample(data.power_w, latitude.time_s);
     for (std::size_t i = 0; i < latitude.time_s.size(); ++i) {
         TrackPoint point{latitude.time_s[i], longitude[i], latitude.value[i]};
+        if (point.time_s < phases.part.start_s || point.time_s > phases.part.end_s) continue;
         if (!altitude.empty()) point.altitude_m = altitude[i];
         if (!power.empty()) point.power_w = power[i];
         point.phase = phase_at(phases, point.time_s);
         track.points.push_back(point);
     }
+    if (track.points.size() < 2) throw InputError({data.file}, "has no positions in that sortie");
     return track;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -121,6 +122,8 @@ struct FlightPhases {
     std::vector<GroundEvent> ground_events;
     std::string motor_source;  ///< evidence of the running motor: "ENERGY.throttle"
     std::vector<std::string> warnings;
+    /// The part of the log between the sorties that were left out (--sortie): by default the whole log.
+    TimeInterval part{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 
 }  // namespace flightwatt::flight

@@ -47,8 +47,13 @@ std::string not_flown_reason(const FlightSeries& series) {
     return phases.ground_events.empty() ? "no motion" : phases.ground_events.front().what;
 }
 
+/// Leaves out the other sorties, with the log before and after them.
 void restrict_to_sortie(FlightPhases& phases, std::size_t number, const std::string& file) {
     const auto count = phases.sorties.size();
+    for (const auto& sortie : phases.sorties) {
+        if (sortie.number < number) phases.part.start_s = sortie.end_s();
+        if (sortie.number > number) phases.part.end_s = std::min(phases.part.end_s, sortie.start_s());
+    }
     std::erase_if(phases.sorties, [&](const Sortie& sortie) { return sortie.number != number; });
     if (phases.sorties.empty()) {
         throw InputError({file}, fmt::format("has no sortie {}: there are {}", number, count));

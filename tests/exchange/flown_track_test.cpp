@@ -83,6 +83,17 @@ TEST(FlownTrack, TakesTheLogsClockBeforeThatOfItsName) {
     EXPECT_EQ(utc_text(track, 0.7399), "2020-07-05T08:26:45.000Z") << "rounded, not cut";
 }
 
+TEST(FlownTrack, IsThatBetweenTheSortiesThatAreLeftOut) {
+    auto phases = two_phases();
+    phases.part = {0.5, 3.0};
+    const auto track = flown_track(select_tracks(places()), phases);
+    ASSERT_EQ(track.points.size(), 3U);
+    EXPECT_EQ(track.points.front().time_s, 1.0);
+    EXPECT_EQ(track.points.back().time_s, 3.0);
+    phases.part = {5.0, 6.0};
+    EXPECT_THROW(flown_track(select_tracks(places()), phases), InputError);
+}
+
 TEST(FlownTrack, RefusesALogWithoutPositionsAndSaysWhy) {
     auto series = places();
     series.tracks.resize(2);

@@ -11,6 +11,7 @@
 #include "helpers/selected_tracks.h"
 #include "helpers/test_paths.h"
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -42,6 +43,26 @@ LoadOptions without_power() {
     LoadOptions options;
     options.power_required = false;
     return options;
+}
+
+TEST(LoadFlight, CountsNoOtherSortieAsPowerOutsideOfTheRequestedOne) {
+    auto points = test::sortie(100);
+    for (const double begin_s : {700.0, 1300.0})
+        for (const auto& point : test::sortie(begin_s)) points.push_back(point);
+    for (const std::size_t number : {1U, 2U, 3U}) {
+        LoadOptions options;
+        options.sortie = number;
+        const auto flight = segment_and_check(test::series_of(points), options);
+        ASSERT_EQ(flight.phases.sorties.size(), 1U);
+        EXPECT_THAT(texts_of(flight.diagnostics), testing::Not(testing::Contains(HasSubstr("drawn outside"))))
+            << number;
+        const auto& part = flight.phases.part;
+        if (number > 1) {
+            EXPECT_NEAR(part.start_s, number == 3 ? 1070.0 : 470.0, 15.0);
+        }
+        EXPECT_EQ(std::isinf(part.start_s), number == 1);
+        EXPECT_EQ(std::isinf(part.end_s), number == 3);
+    }
 }
 
 TEST(LoadFlight, SegmentsAFlightWithoutPowerWhereNoneIsRequired) {

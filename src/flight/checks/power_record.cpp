@@ -165,6 +165,7 @@ PowerRecord make_power_record(const FlightData& data, const FlightPhases& phases
         data.circuits.size() > 1 || (is_sum_over_devices(power) && power.source.starts_with("POWER_DEVICE"));
     record.power_source = power.source;
     record.sorties = phases.sorties;
+    record.part = phases.part;
     const auto& time_s = record.time_s;
     for (const auto& sortie : phases.sorties) {
         record.in_flight.push_back({first_at_or_after(time_s, sortie.start_s()), first_after(time_s, sortie.end_s())});

@@ -49,9 +49,10 @@ struct PowerRecord {
     bool is_sum_of_circuits = false;      ///< the power is the sum of circuits with voltages of their own
     std::string power_source;             ///< "ENERGY.power"
     std::vector<Sortie> sorties;
-    std::vector<IndexSpan> in_flight;  ///< indices of the samples of each sortie
-    double energy_j = 0.0;             ///< in flight
-    double duration_s = 0.0;           ///< in flight
+    TimeInterval part = FlightPhases{}.part;  ///< see there
+    std::vector<IndexSpan> in_flight;         ///< indices of the samples of each sortie
+    double energy_j = 0.0;                    ///< in flight
+    double duration_s = 0.0;                  ///< in flight
 
     // Derived from the members above by derive_facts().
     std::vector<SampleGap> gaps;  ///< of the power samples
@@ -74,6 +75,8 @@ struct PowerRecord {
     double max_v = std::numeric_limits<double>::quiet_NaN();
 
     bool is_flown(std::size_t i) const { return states[i] == State::flight; }
+    /// Whether a sample is outside of the sorties, and of those that were left out.
+    bool is_outside(std::size_t i) const { return !is_flown(i) && time_s[i] >= part.start_s && time_s[i] < part.end_s; }
     bool is_at_rest(std::size_t i) const { return states[i] == State::rest; }
     bool has_current() const { return !current_a.empty(); }
     bool has_throttle() const { return !throttle_percent.empty(); }

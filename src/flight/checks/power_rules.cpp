@@ -259,7 +259,7 @@ constexpr PowerRule rules[] = {
     {.kind = "power outside of flights",
      .text = "{energy_wh:.3f} Wh, {percent:.0f} % of the energy in flight, were drawn outside of it with more than "
              "30 % throttle: was it a long run-up, or is the altitude wrong?",
-     .applies = [](const PowerRecord& r, std::size_t i) { return !r.is_flown(i); },
+     .applies = [](const PowerRecord& r, std::size_t i) { return r.is_outside(i); },
      .holds = [](const PowerRecord& r, std::size_t i) { return r.has_open_throttle(i); },
      .min_s = 30.0,
      .share = Share::energy,
