@@ -209,7 +209,9 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
     Exported result;
     result.text = format == "geojson" ? to_geojson(track) : format == "kml" ? to_kml(track) : to_gpx(track);
     if (track.clock == exchange::TrackClock::name)
-        result.notes.push_back(file + ": no .log contains the date: that of its name is used, as UTC");
+        cli::warn(call, file +
+                            ": no .log contains the date: that of its name, a local time, is used as UTC: times may be "
+                            "wrong by hours");
     if (track.clock == exchange::TrackClock::none)
         result.notes.push_back(file + ": neither a .log nor its name contains the date: points have no time");
     if (!track.points.front().altitude_m) result.notes.push_back(file + ": has no altitude: the track has none");

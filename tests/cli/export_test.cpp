@@ -195,7 +195,7 @@ TEST(Export, SaysWhatATrackLacks) {
     EXPECT_EQ(bare.out.find("<time>"), std::string::npos);
     std::filesystem::copy_file(folder / "bare.csv", folder / "20_07_05__10_26_44.csv");
     const auto named = exported("20_07_05__10_26_44.csv --format gpx", folder);
-    EXPECT_THAT(named.err, HasSubstr("is used, as UTC"));
+    EXPECT_THAT(named.err, HasSubstr("warning: 20_07_05__10_26_44.csv: no .log contains the date"));
     EXPECT_THAT(named.out, HasSubstr("<time>2020-07-05T10:26:45.000Z</time>"));
     write_file_atomically(folder / "none.csv", "time_s,power_w\n0,1\n1,2\n");
     const auto none = exported("none.csv --format kml", folder);
