@@ -215,6 +215,8 @@ Exported export_track(const cli::StageCall& call, const ExportArguments& argumen
     if (track.clock == exchange::TrackClock::none)
         result.notes.push_back(file + ": neither a .log nor its name contains the date: points have no time");
     if (!track.points.front().altitude_m) result.notes.push_back(file + ": has no altitude: the track has none");
+    if (track.level == exchange::AltitudeLevel::takeoff)
+        cli::warn(call, file + ": it has no altitude above the sea: those of the track are above the take-off");
     return result;
 }
 

@@ -1,9 +1,11 @@
 #include "exchange/flown_track.h"
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "base/text.h"
 #include "flight/flight_identity.h"
 #include "flight/phase_statistics.h"
+#include "flight/select.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +40,35 @@ void set_clock(FlownTrack& track, const flight::FlightData& data) {
         track.clock = TrackClock::name;
         track.start_clock_s = static_cast<double>(start->time_since_epoch().count());
     }
+}
+
+/// The median difference of an altitude above the sea from the one that is used, in flight; std::nullopt if the log has
+/// none, or one that does not change, as without a receiver.
+std::optional<double> difference_from_sea_m(const flight::FlightData& data, const flight::FlightPhases& phases) {
+    for (const auto& other : data.other_altitudes) {
+        if (!is_above_sea(other) || is_constant(other)) continue;
+        const auto used_m = resample(data.altitude_m, other.time_s);
+        std::vector<double> differences_m;
+        for (std::size_t i = 0; i < used_m.size(); ++i)
+            if (phases.sorties.empty() || phase_at(phases, other.time_s[i]))
+                differences_m.push_back(other.value[i] - used_m[i]);
+        if (!differences_m.empty()) return median(std::move(differences_m));
+    }
+    return std::nullopt;
+}
+
+/// Sets the altitudes of a track that has points.
+void set_altitudes(FlownTrack& track, const flight::FlightData& data, const flight::FlightPhases& phases) {
+    if (data.altitude_m.empty()) return;
+    double offset_m = 0.0;
+    if (!is_above_sea(data.altitude_m)) {
+        const auto difference_m = difference_from_sea_m(data, phases);
+        if (!difference_m) track.level = AltitudeLevel::takeoff;
+        offset_m = difference_m             ? *difference_m
+                   : phases.sorties.empty() ? -value_at(data.altitude_m, track.points.front().time_s)
+                                            : -phases.sorties.front().ground_altitude_m;
+    }
+    for (auto& point : track.points) point.altitude_m = value_at(data.altitude_m, point.time_s) + offset_m;
 }
 
 std::optional<double> mean_power_w(const FlownTrack& track, const TrackSegment& segment) {
@@ -105,6 +136,7 @@ Json feature(const FlownTrack& track, const TrackSegment& segment) {
                     {"mean_power_w", segment.mean_power_w ? Json(*segment.mean_power_w) : Json()},
                     {"times_s", times_s},
                     {"powers_w", powers_w}};
+    if (track.level == AltitudeLevel::takeoff) properties["altitudeMode"] = "relativeToGround";
     if (track.clock != TrackClock::none) properties["coordTimes"] = times;
     return {
         {"type", "Feature"}, {"geometry", {{"type", "LineString"}, {"coordinates", line}}}, {"properties", properties}};
@@ -132,7 +164,8 @@ void add_line_style(pugi::xml_node& placemark, const std::string& rgb) {
 }
 
 const char* altitude_mode(const FlownTrack& track) {
-    return track.points.front().altitude_m ? "absolute" : "clampToGround";
+    if (!track.points.front().altitude_m) return "clampToGround";
+    return track.level == AltitudeLevel::sea ? "absolute" : "relativeToGround";
 }
 
 void add_track(pugi::xml_node& placemark, const FlownTrack& track, const TrackSegment& segment) {
@@ -181,17 +214,16 @@ FlownTrack flown_track(const flight::FlightData& data, const flight::FlightPhase
     }
     FlownTrack track{data.flight, flight::describe_aircraft(data.aircraft_id, data.aircraft_name), {}};
     set_clock(track, data);
-    const auto altitude = resample(data.altitude_m, latitude.time_s);
     const auto power = resample(data.power_w, latitude.time_s);
     for (std::size_t i = 0; i < latitude.time_s.size(); ++i) {
         TrackPoint point{latitude.time_s[i], longitude[i], latitude.value[i]};
         if (point.time_s < phases.part.start_s || point.time_s > phases.part.end_s) continue;
-        if (!altitude.empty()) point.altitude_m = altitude[i];
         if (!power.empty()) point.power_w = power[i];
         point.phase = phase_at(phases, point.time_s);
         track.points.push_back(point);
     }
     if (track.points.size() < 2) throw InputError({data.file}, "has no positions in that sortie");
+    set_altitudes(track, data, phases);
     return track;
 }
 

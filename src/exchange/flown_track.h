@@ -15,7 +15,7 @@ struct TrackPoint {
     double time_s = 0.0;  ///< the log's own seconds
     double longitude_deg = 0.0;
     double latitude_deg = 0.0;
-    std::optional<double> altitude_m = {};  ///< above sea level, from the log
+    std::optional<double> altitude_m = {};  ///< see AltitudeLevel
     std::optional<double> power_w = {};
     std::optional<flight::Phase> phase = {};  ///< none on the ground
 };
@@ -27,6 +27,12 @@ enum class TrackClock {
     none
 };
 
+/// The level from which the altitudes of a track are counted.
+enum class AltitudeLevel {
+    sea,
+    takeoff  ///< the ground of the first sortie, or the first altitude: the log has none above the sea
+};
+
 /// The positions of a flight, for maps.
 struct FlownTrack {
     std::string flight;
@@ -34,9 +40,11 @@ struct FlownTrack {
     std::vector<TrackPoint> points;
     TrackClock clock = TrackClock::none;
     double start_clock_s = 0.0;  ///< Unix time at the log's time 0, if there is a clock
+    AltitudeLevel level = AltitudeLevel::sea;
 };
 
-/// Returns the track of a flight: a point for each position in degrees, with altitude and power at its time. Throws
+/// Returns the track of a flight: a point for each position in degrees, with altitude and power at its time. An altitude
+/// that is not above the sea is moved by its median difference in flight from one that is, if the log has one. Throws
 /// InputError for fewer than two positions.
 FlownTrack flown_track(const flight::FlightData& data, const flight::FlightPhases& phases);
 

@@ -11,9 +11,13 @@
 #include "flight/select/supply.h"
 #include "flight/select/throttle.h"
 #include "flight/select/voltage_dropouts.h"
+#include "flight/series_file.h"
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -186,6 +190,21 @@ std::optional<double> stated_ground_altitude_m(const FlightData& data) {
     if (source.starts_with("ROTORCRAFT_FP") || source.starts_with("GLOBAL_POSITION_INT")) return 0.0;
     const auto logged = last_value(data.ground_altitude_m);
     return logged ? logged : data.planned_ground_altitude_m;
+}
+
+bool is_above_sea(const Track& altitude) {
+    static const std::set<std::string_view> sources{
+        // Paparazzi; the Matrice 100's CSV
+        "ESTIMATOR.z", "GPS.alt", "GPS_INT.hmsl", "AIR_DATA.amsl_baro", "position_z",
+        // ArduPilot and PX4's early logs; PX4; MAVLink
+        "POS.Alt", "GPS.Alt", "GPOS.Alt", "vehicle_global_position.alt", "vehicle_gps_position.altitude_msl_m",
+        "vehicle_gps_position.alt", "GPS_RAW_INT.alt",
+        // The user's own
+        plain_source};
+    auto source = altitude.source;
+    if (const auto instance = source.find('['); instance != std::string::npos)
+        source.erase(instance, source.find(']') - instance + 1);
+    return sources.contains(source);
 }
 
 }  // namespace flightwatt::flight

@@ -24,6 +24,7 @@ flight::FlightSeries places(std::vector<double> longitudes = {1.0, 1.1, 1.2, 1.3
         series.tracks.push_back({.name = name, .source = "made", .time_s = times, .value = std::move(values)});
     };
     add("altitude_m", {100.0, 110.0, 120.0, 130.0, 140.0});
+    series.tracks.back().source = "series CSV";
     add("power_w", {0.0, 10.0, 20.0, 30.0, 40.0});
     add("latitude_deg", {40.0, 40.1, 40.2, 40.3, 40.4});
     add("longitude_deg", std::move(longitudes));
@@ -81,6 +82,55 @@ TEST(FlownTrack, TakesTheLogsClockBeforeThatOfItsName) {
     EXPECT_EQ(track.clock, TrackClock::log);
     EXPECT_EQ(utc_text(track, 0.0), "2020-07-05T08:26:44.260Z");
     EXPECT_EQ(utc_text(track, 0.7399), "2020-07-05T08:26:45.000Z") << "rounded, not cut";
+}
+
+/// The places with an altitude above the ground.
+flight::FlightSeries places_above_ground(const char* source) {
+    auto series = places();
+    auto& altitude = series.tracks.front();
+    altitude.source = source;
+    altitude.value = {0.0, 10.0, 20.0, 30.0, 40.0};
+    return series;
+}
+
+TEST(FlownTrack, IsAboveTheSeaByTheReceiversAltitudeWhereItIsABarometers) {
+    auto series = places_above_ground("BARO.Alt");
+    auto receivers = series.tracks.front();
+    receivers.source = "GPS.Alt";
+    receivers.value = {250.0, 311.0, 320.0, 328.0, 339.0};  // it settles on the ground
+    series.tracks.push_back(receivers);
+    const auto data = select_tracks(series);
+    ASSERT_EQ(data.altitude_m.source, "BARO.Alt") << "the phases are those of the barometer";
+    const auto track = flown_track(data, two_phases());
+    EXPECT_EQ(track.level, AltitudeLevel::sea);
+    EXPECT_DOUBLE_EQ(track.points[0].altitude_m.value(), 300.0);
+    EXPECT_DOUBLE_EQ(track.points[4].altitude_m.value(), 340.0);
+    EXPECT_THAT(to_kml(track), testing::HasSubstr("<altitudeMode>absolute</altitudeMode>"));
+    EXPECT_THAT(to_geojson(track), testing::Not(testing::HasSubstr("altitudeMode")));
+}
+
+TEST(FlownTrack, IsAboveTheTakeOffWhereNothingIsAboveTheSea) {
+    auto series = places_above_ground("vehicle_local_position.z");
+    auto constant = series.tracks.front();
+    constant.source = "vehicle_gps_position.alt";
+    constant.value = {0.0, 0.0, 0.0, 0.0, 0.0};
+    series.tracks.push_back(constant);
+    auto phases = two_phases();
+    phases.sorties.front().ground_altitude_m = 10.0;
+    const auto track = flown_track(select_tracks(series), phases);
+    EXPECT_EQ(track.level, AltitudeLevel::takeoff);
+    EXPECT_DOUBLE_EQ(track.points[2].altitude_m.value(), 10.0);
+    EXPECT_THAT(to_kml(track), testing::HasSubstr("<altitudeMode>relativeToGround</altitudeMode>"));
+    EXPECT_THAT(to_geojson(track), testing::HasSubstr(R"("altitudeMode":"relativeToGround")"));
+    EXPECT_DOUBLE_EQ(flown_track(select_tracks(series), {}).points[2].altitude_m.value(), 20.0);
+}
+
+TEST(FlownTrack, HasTheAltitudeOfTheLogWhereItIsAboveTheSea) {
+    for (const auto* source : {"ESTIMATOR.z", "GPS[1].Alt", "POS.Alt", "GPS_RAW_INT.alt", "series CSV"}) {
+        const auto track = flown_track(select_tracks(places_above_ground(source)), two_phases());
+        EXPECT_EQ(track.level, AltitudeLevel::sea) << source;
+        EXPECT_DOUBLE_EQ(track.points[2].altitude_m.value(), 20.0) << source;
+    }
 }
 
 TEST(FlownTrack, IsThatBetweenTheSortiesThatAreLeftOut) {
