@@ -30,8 +30,9 @@ void append(Diagnostics& diagnostics, Severity severity, const std::string& kind
 
 std::string kind_of_reason(const std::string& reason) {
     const std::set<std::string> joins{"", "a", "as", "at", "by", "in", "its", "of", "than", "the", "to"};
-    const auto end = std::min(reason.size(), reason.find_first_of(":;,(0123456789"));
-    auto kind = reason.substr(0, end);
+    auto kind = reason.substr(0, reason.find_first_of(":;,("));
+    if (const auto digit = kind.find_first_of("0123456789"); digit != std::string::npos)
+        kind.resize(kind.rfind(' ', digit) + 1);  // before "48", and before the name "f_2"
     for (auto last = kind.size(); last != std::string::npos && joins.contains(kind.substr(last));) {
         kind.resize(last);
         while (kind.ends_with(' ')) kind.pop_back();

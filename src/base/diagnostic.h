@@ -30,8 +30,8 @@ using Diagnostics = std::vector<Diagnostic>;
 void append(Diagnostics& diagnostics, Severity severity, const std::string& kind, const std::string& flight,
             const std::vector<std::string>& texts);
 
-/// The first words of a reason, which others share: up to a colon, a number or parentheses. "has no flight" of "has no
-/// flight in 48 s; no motion".
+/// The first words of a reason, which others share: up to a colon, parentheses, or a word with a digit, such as a number
+/// or the name of a log. "has no flight" of "has no flight in 48 s; no motion".
 std::string kind_of_reason(const std::string& reason);
 
 /// The texts of the findings of at least this severity.

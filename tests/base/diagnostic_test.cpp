@@ -50,6 +50,8 @@ TEST(Diagnostic, KindOfAReasonIsWhatOthersShare) {
         {"power faults: power is negative", "power faults"},
         {"has no telemetry in its 1 lines", "has no telemetry"},
         {"is empty", "is empty"},
+        {"it is the same flight as f_2, which is used", "it is the same flight"},
+        {"is of aircraft A7", "is of aircraft"},
         {"3 samples", ""}};
     for (const auto& [reason, kind] : kinds) EXPECT_EQ(kind_of_reason(reason), kind);
 }
