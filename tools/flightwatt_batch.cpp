@@ -159,10 +159,11 @@ int finish_each(const cli::StageCall& call, const cli::BatchArguments& arguments
     remove_model(call, options.out);
     for (const auto& flight : flights)
         if (flight.selection.flights.empty()) add_diagnostics(call, flight);
+    const auto aircraft = cli::certain_aircraft(call, flown.groups, flown.flights);
+    settle_folders_of_each(call, options.out, aircraft, arguments.prune);
     if (flown.groups.empty()) throw InputError({}, "no flight can be fitted", "see the reasons above");
     std::vector<cli::AircraftFolder> made;
-    for (const auto& group : cli::certain_aircraft(call, flown.groups, flown.flights))
-        made.push_back(finish_one(call, arguments, group, flown, options, published));
+    for (const auto& group : aircraft) made.push_back(finish_one(call, arguments, group, flown, options, published));
     if (call.json) cli::print_json(call, BatchOutput{nullptr, &made, &flights});
     const auto code = exit_code(call, totals_of(flights));
     const bool any_failed = std::ranges::any_of(made, [](const auto& one) { return !one.has_model; });

@@ -60,6 +60,18 @@ bool is_there(const std::filesystem::path& path) {
     return std::filesystem::exists(path, unknown);
 }
 
+constexpr auto each_key = "is_of_each";  // of batch.json
+
+bool is_folder_of_each(const std::filesystem::path& out) {
+    if (!is_there(out / manifest_name)) return false;
+    try {
+        const OverwriteExemption own;
+        return Json::parse(read_file(out / manifest_name)).value(each_key, false);
+    } catch (const std::exception&) {
+        return false;  // damaged
+    }
+}
+
 /// Names this run's logs: as before, or with `prune` as a batch of them alone. Returns the names of the earlier flights
 /// that are among them and keep their names.
 std::unordered_set<std::string_view> name_logs(std::vector<LogFile>& logs, const std::vector<LogFile>& earlier,
@@ -165,12 +177,13 @@ std::vector<LogFile> read_manifest(const std::filesystem::path& out) {
     return logs;
 }
 
-void write_manifest(const std::vector<LogFile>& logs, const std::filesystem::path& out) {
+void write_manifest(const std::vector<LogFile>& logs, const std::filesystem::path& out, bool is_of_each) {
     auto flights = Json::array();
     for (const auto& flight : logs) flights.push_back(json_of(flight));
     auto files = std::set<std::string>(model_names.begin(), model_names.end());
     files.insert(catalogue_name);
     Json json{{"format", format_version}, {"files", files}, {"unfinished", temporary_folder}};
+    if (is_of_each) json[each_key] = true;
     json["flights"] = std::move(flights);
     const OverwriteExemption own;
     write_file_atomically(out / manifest_name, json.dump(1, ' ') + "\n", out / temporary_folder);
@@ -222,7 +235,31 @@ void prepare_folder(const BatchPlan& plan, const std::filesystem::path& out) {
     const auto stay = names_of(plan.flights);
     for (const auto& dropped : plan.dropped)
         if (!stay.contains(dropped.flight)) remove_results(out, dropped.flight);
-    write_manifest(plan.flights, out);
+    write_manifest(plan.flights, out, plan.is_of_each);
+}
+
+std::vector<std::filesystem::path> folders_of_each(const std::filesystem::path& out) {
+    std::vector<std::filesystem::path> folders;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(out, none))
+        if (entry.is_directory(none) && !entry.is_symlink(none) && is_folder_of_each(entry.path()))
+            folders.push_back(entry.path());
+    std::ranges::sort(folders);
+    return folders;
+}
+
+void remove_batch(const std::filesystem::path& out) {
+    const auto flights = read_manifest(out);
+    std::vector<std::filesystem::path> files{out / catalogue_name, out / manifest_name};
+    for (const auto* name : model_names) files.emplace_back(out / name);
+    for (const auto& file : files) check_overwrite(file);
+    for (const auto& flight : flights)
+        for (const auto* ending : result_suffixes) check_overwrite(result_path(out, flight.flight, ending));
+    std::error_code ignored;
+    for (const auto& flight : flights) remove_results(out, flight.flight);
+    for (const auto& file : files) std::filesystem::remove(file, ignored);
+    std::filesystem::remove_all(out / temporary_folder, ignored);
+    for (const auto& folder : {out / "flights", out}) std::filesystem::remove(folder, ignored);
 }
 
 }  // namespace flightwatt::batch

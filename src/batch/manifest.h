@@ -46,7 +46,14 @@ void read_batch_json(const std::filesystem::path& file, const std::string& text,
 /// The flights of OUT/batch.json by name; none without the file. Throws InputError as read_batch_json.
 std::vector<LogFile> read_manifest(const std::filesystem::path& out);
 
-void write_manifest(const std::vector<LogFile>& flights, const std::filesystem::path& out);
+void write_manifest(const std::vector<LogFile>& flights, const std::filesystem::path& out, bool is_of_each = false);
+
+/// Returns the folders of `--each` in OUT, by their batch.json, in order.
+std::vector<std::filesystem::path> folders_of_each(const std::filesystem::path& out);
+
+/// Removes the files that batch.json lists, and the folder if it is empty then. Throws UsageError, before it removes
+/// any, if one is an input.
+void remove_batch(const std::filesystem::path& out);
 
 /// A flight of an earlier run that is dropped from the folder.
 struct DroppedFlight {
@@ -60,6 +67,7 @@ struct BatchPlan {
     std::vector<DroppedFlight> dropped;
     std::vector<LogFile> flights;  ///< in the manifest after the run, by name
     std::vector<LogFile> earlier;  ///< in the manifest before it
+    bool is_of_each = false;       ///< the folder of one aircraft, of `--each`
 };
 
 /// Adds this run's logs to those of earlier runs. A log keeps its name; others of one name are NAME, NAME_2, ...

@@ -229,7 +229,8 @@ BatchFlights merge_flights(const MergePlan& plan, const std::filesystem::path& o
 BatchFlights copy_flights(const std::filesystem::path& from, const std::set<std::string>& flights,
                           const BatchOptions& to) {
     make_directories(to.out);
-    const auto plan = plan_merge({from}, to.out, true, flights);
+    auto plan = plan_merge({from}, to.out, true, flights);
+    plan.folder.is_of_each = true;
     refuse_foreign_files(plan.folder, to.out);
     const RemoveIfEmpty unfinished{to.out / temporary_folder};
     prepare_folder(plan.folder, to.out);

@@ -211,6 +211,20 @@ void remove_model(const StageCall& call, const std::filesystem::path& out) {
                            fmt::join(removed, ", "), out.string()));
 }
 
+void settle_folders_of_each(const StageCall& call, const std::filesystem::path& out,
+                            const std::vector<batch::AircraftGroup>& aircraft, bool prune) {
+    std::set<std::filesystem::path> made;
+    for (const auto& group : aircraft) made.insert(out / file_name_of(group.selector));
+    for (const auto& folder : batch::folders_of_each(out)) {
+        if (made.contains(folder)) continue;
+        if (prune) batch::remove_batch(folder);
+        prune ? note(call, fmt::format("removed: {}, of an earlier run: no flight is of its aircraft", folder.string()))
+              : warn(call, fmt::format("{} and its model are an earlier run's: no flight is of its aircraft now; "
+                                       "--prune removes it",
+                                       folder.string()));
+    }
+}
+
 batch::BatchFlights separate_aircraft(const batch::AircraftGroup& group, const ChosenAircraft& flown,
                                       batch::BatchOptions& options) {
     const auto all = std::exchange(options.out, options.out / file_name_of(group.selector));

@@ -77,6 +77,10 @@ std::optional<FittedBatch> fit_folder(const StageCall& call, const BatchArgument
 /// Removes the model of an earlier run, with a note: without a fit it would be taken for this one's.
 void remove_model(const StageCall& call, const std::filesystem::path& out);
 
+/// Removes, with --prune, the folders of `--each` in OUT that are of none of these aircraft; else warns of them.
+void settle_folders_of_each(const StageCall& call, const std::filesystem::path& out,
+                            const std::vector<batch::AircraftGroup>& aircraft, bool prune);
+
 /// Makes a batch of the flights of one aircraft in a folder of its own below that of all; `options` becomes its own.
 batch::BatchFlights separate_aircraft(const batch::AircraftGroup& group, const ChosenAircraft& flown,
                                       batch::BatchOptions& options);

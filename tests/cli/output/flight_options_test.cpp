@@ -192,6 +192,33 @@ TEST_F(FlightOptions, MakeAResultOfEachAircraft) {
     EXPECT_EQ(run("fit --each copter.csv -o m.toml --aircraft copter").code, usage_error);
 }
 
+TEST_F(FlightOptions, LeaveNoModelOfAnAircraftWithoutFlightsInAFolderOfEach) {
+    write_file_atomically(folder_ / "copter.csv", plain_flight(24.8, 400.0));
+    write_file_atomically(folder_ / "wing.csv", plain_flight(12.4, 300.0));
+    ASSERT_EQ(run("batch --order 0 --each copter.csv wing.csv -o out").code, ok);
+    ASSERT_EQ(run("batch --order 0 wing.csv -o out/own").code, ok);
+    write_file_atomically(folder_ / "out" / "wing" / "mine.txt", "of the user");
+    const auto kept = run("batch --order 0 --each copter.csv -o out");
+    EXPECT_THAT(kept.err, testing::Not(HasSubstr("earlier run's: no flight"))) << "its flight stays";
+    const auto pruned = run("batch --order 0 --each --prune copter.csv -o out");
+    EXPECT_EQ(pruned.code, ok) << pruned.err;
+    EXPECT_THAT(pruned.err, HasSubstr("removed: out/wing, of an earlier run"));
+    for (const auto* file : {"batch.json", "model.toml", "flights.csv", "flights"})
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "wing" / file)) << file;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "wing" / "mine.txt"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "copter" / "model.toml"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "own" / "model.toml")) << "a batch of the user's";
+}
+
+TEST_F(FlightOptions, WarnOfAModelOfAnAircraftWithoutFlightsInAFolderOfEach) {
+    write_file_atomically(folder_ / "copter.csv", plain_flight(24.8, 400.0));
+    write_file_atomically(folder_ / "wing.csv", plain_flight(12.4, 300.0));
+    ASSERT_EQ(run("batch --order 0 --each copter.csv wing.csv -o out").code, ok);
+    const auto excluded = run("batch --order 0 --each copter.csv wing.csv -o out --exclude wing");
+    EXPECT_THAT(excluded.err, HasSubstr("warning: out/wing and its model are an earlier run's"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "wing" / "model.toml"));
+}
+
 TEST_F(FlightOptions, ChooseTheSortie) {
     expect_effect("segment" + two_sorties(), "--sortie 2");
     const auto second = run("segment --sortie 2" + two_sorties());
