@@ -182,6 +182,53 @@ test("a plan that does not fit has what would help, and one that fits is saved f
   assert.ok(plan.mission.items.length > 10);
 });
 
+/// Corners of a rectangle from 43.56 N, 1.48 E on, as a file that is dropped.
+function areaOf(name, width_deg, height_deg) {
+  const [x, y] = [1.48, 43.56];
+  const ring = [[x, y], [x + width_deg, y], [x + width_deg, y + height_deg], [x, y + height_deg], [x, y]];
+  return named(name, Buffer.from(JSON.stringify({ type: "Polygon", coordinates: [ring] })));
+}
+
+const move = (page, label, value) => page.locator(`input[aria-label="${label}"]`).fill(String(value));
+
+/// Waits until nothing is computed.
+const settled = (page) => page.waitForFunction(
+  () => document.querySelector(".verdict-band[aria-busy=false]") && !document.querySelector("[aria-busy=true]"), null, patience);
+
+test("an edited plan of the same name has its own verdict and keeps the sliders", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [areaOf("field.geojson", 0.01, 0.005)], "Choose a plan");
+  await page.waitForSelector(".verdict-band.good", patience);
+  await move(page, "Spacing of the lines", 70);
+  await page.waitForFunction(() => /--spacing 70/.test(document.querySelector(".command code")?.textContent ?? ""), null, patience);
+  await settled(page);
+  const outline = () => page.locator(".map path").evaluateAll((all) => all.map((one) => one.getAttribute("d")).join());
+  const [facts, drawn] = [await page.textContent(".plan-facts"), await outline()];
+  await choose(page, [areaOf("field.geojson", 0.02, 0.02)], "Open");
+  await page.waitForSelector(".verdict-band.bad", patience);
+  assert.notEqual(await page.textContent(".plan-facts"), facts);
+  assert.notEqual(await outline(), drawn);
+  assert.match(await page.textContent(".command code"), /--spacing 70/);
+});
+
+test("a plan that a slider makes unflyable keeps its sliders", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [areaOf("field.geojson", 0.01, 0.005)], "Choose a plan");
+  await page.waitForSelector(".verdict-band.good", patience);
+  await move(page, "Wind", 2);
+  await page.waitForSelector("[role=alert]", patience);
+  assert.match(await page.textContent("h1"), /not flown/);
+  assert.equal(await page.locator(".plan-side button").count(), 0, "what is not flown is not saved");
+  await move(page, "Wind", 0);
+  await page.waitForSelector(".verdict-band.good", patience);
+});
+
 test("a plan of which a movement is not flown fits perhaps", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);

@@ -1,5 +1,5 @@
 // Whether a plan or an area fits a pack: new-mission, path and simulate on the aircraft of the answer.
-import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { Card, Command, Facts, Folded, Mark, save, type Grade } from "../ui/basics";
 import { chance, distance, duration, number, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
@@ -234,7 +234,7 @@ function HelpLine({ help: { text, suffices, probability, change }, onChange }: {
   return <button type="button" class="help" onClick={() => onChange(change)}>{line}<Icon name="arrow" /></button>;
 }
 
-function useShape(project: Project, plan: string): PlanShape {
+function useShape(project: Project, plan: string, dropped: State["dropped"]): PlanShape {
   const [shape, setShape] = useState<PlanShape>({ lines: [], areas: [], named: [] });
   useEffect(() => {
     if (plan) void project.text(plan).then(
@@ -242,7 +242,7 @@ function useShape(project: Project, plan: string): PlanShape {
       () => setShape({ lines: [], areas: [], named: [] }),
     );
     else setShape({ lines: [], areas: [], named: [] });
-  }, [plan]);
+  }, [plan, dropped]);
   return shape;
 }
 
@@ -474,7 +474,7 @@ function NoPlan({ project, onDraw }: { project: Project; onDraw: () => void }) {
   );
 }
 
-/// The options of the plan on the screen; another plan begins with its own.
+/// The options of the plan on the screen; another plan begins with its own, an edited one keeps them.
 function usePlanOptions(project: Project, state: State) {
   const [options, setOptions] = useState<PlanOptions | null>(null);
   const [blocks, setBlocks] = useState<PlanBlock[]>([]);
@@ -483,34 +483,34 @@ function usePlanOptions(project: Project, state: State) {
     setBlocks(found);
     const survey = found.find((one) =>
       /survey/i.test(one.block)) ?? [...found].sort((a, b) => b.length_m - a.length_m)[0];
-    setOptions({ plan, blocks: survey ? [survey.block] : [], packs: 1 });
+    const chosen = survey ? [survey.block] : [];
+    setOptions((before) => {
+      if (before?.plan !== plan) return { plan, blocks: chosen, packs: 1 };
+      const blocks = before.blocks.filter((name) => found.some((one) => one.block === name));
+      return { ...before, blocks: blocks.length > 0 ? blocks : chosen };
+    });
   }, [project]);
-  const newest = state.plans[state.plans.length - 1];
+  const last = state.plans[state.plans.length - 1];
   useEffect(() => {
-    if (newest && !options) void open(newest);
-  }, [newest]);
-  const known = useRef(state.plans);
-  useEffect(() => {
-    const added = state.plans.find((one) => !known.current.includes(one));
-    known.current = state.plans;
-    if (added) void open(added);
-  }, [state.plans]);
+    const plan = state.dropped.plan ?? options?.plan ?? last;
+    if (plan) void open(plan);
+  }, [state.dropped, !last]);
   return { options, setOptions, blocks, open };
 }
 
 /// The folder of the dropped tiles, for a plan whose altitudes are above the terrain.
-function useTerrain(project: Project, plan: string | undefined, tiles: number): string | undefined {
+function useTerrain(project: Project, plan: string | undefined, { tiles, dropped }: State): string | undefined {
   const [is_above, setAbove] = useState(false);
   useEffect(() => {
     setAbove(false);
     if (plan && /\.(plan|waypoints)$/i.test(plan)) void project.text(plan).then((text) => setAbove(isAboveTerrain(text)));
-  }, [plan]);
+  }, [plan, dropped]);
   return is_above && tiles > 0 ? terrain_folder : undefined;
 }
 
 export function PlanScreen({ project, state, aircraft }: { project: Project; state: State; aircraft?: Aircraft }) {
   const { options, setOptions, blocks, open } = usePlanOptions(project, state);
-  const terrain = useTerrain(project, options?.plan, state.tiles);
+  const terrain = useTerrain(project, options?.plan, state);
   const [drawing, setDrawing] = useState<Place[] | null>(null);
   const answered = aircraft?.now;
   const { found: flown, failed, asking } = useLatest(
@@ -519,7 +519,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
     [options, answered, terrain],
   );
   const places = useFlownPlaces(project, aircraft);
-  const shape = useShape(project, options?.plan ?? "");
+  const shape = useShape(project, options?.plan ?? "", state.dropped);
   const onPlace = useCallback((place: Place) => setDrawing((before) => [...(before ?? []), place]), []);
   if (!aircraft) return <NoLogs />;
   const change = (next: Partial<PlanOptions>) => options && setOptions({ ...options, ...next });
@@ -527,9 +527,9 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
     if (!drawing || drawing.length < 3) return;
     await project.write(drawn_area, areaFile(drawing), true);
     setDrawing(null);
-    await open(drawn_area);
   };
-  const shown = flown && options && flown.options.plan === options.plan && !failed ? flown : null;
+  const last = flown && options && flown.options.plan === options.plan ? flown : null;
+  const shown = failed ? null : last;
   return (
     <>
       {!shown && <h1>
@@ -597,6 +597,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             aircraft={aircraft}
             answered={answered}
             flown={shown}
+            last={last}
             options={options}
             blocks={blocks}
             change={change}
@@ -629,21 +630,23 @@ interface SideProps {
   aircraft: Aircraft;
   answered?: Answered;
   flown: FlownPlan | null;
+  /// The same, or where it cannot be flown any more what was flown before: its sliders take that back.
+  last: FlownPlan | null;
   options: PlanOptions;
   blocks: PlanBlock[];
   change: (next: Partial<PlanOptions>) => void;
 }
 
-function PlanSide({ project, aircraft, answered, flown, options, blocks, change }: SideProps) {
+function PlanSide({ project, aircraft, answered, flown, last, options, blocks, change }: SideProps) {
   const help = useHelp(project, aircraft, answered, flown);
-  if (!flown && blocks.length === 0) return null;
+  if (!last && blocks.length === 0) return null;
   const error = flown?.curve.simulation.power_model?.mean_absolute_error_percent;
   return (
     <section class="card plan-side" aria-label="Change the plan">
       {help.length > 0 && <h2>What would help</h2>}
       {help.map((one) => <HelpLine help={one} onChange={change} />)}
       <BlockChoice blocks={blocks} options={options} change={change} />
-      {flown && !/\.toml$/i.test(options.plan) && <PlanSliders flown={flown} options={options} change={change} />}
+      {last && !/\.toml$/i.test(options.plan) && <PlanSliders flown={last} options={options} change={change} />}
       {flown && <SaveButtons project={project} aircraft={aircraft} answered={answered} flown={flown} />}
       {flown && (
         <Folded title="What it rests on">

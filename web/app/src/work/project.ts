@@ -48,6 +48,7 @@ export class Project {
     unused: [],
     waiting: [],
     plans: [],
+    dropped: {},
     tiles: 0,
     progress: null,
     read_s: null,
@@ -170,7 +171,9 @@ export class Project {
     const among = (...folders: string[]) =>
       [...stored.keys()].filter((path) => folders.some((folder) => path.startsWith(`${folder}/`)));
     const plans = among(plans_folder, missions_folder);
-    this.set({ failed: "", plans: await this.plans(), tiles: this.pathsOf(terrain_folder).length });
+    const known = await this.plans();
+    const latest = plans.length > 0 ? { plan: plans.find((path) => known.includes(path)) } : this.state.dropped;
+    this.set({ failed: "", plans: known, dropped: latest, tiles: this.pathsOf(terrain_folder).length });
     if (among(logs_folder).length > 0) this.queue.add(() => this.readLogs(), true);
     storage.keep(stored)
       .catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
@@ -188,7 +191,7 @@ export class Project {
     await this.engine.write(path, file);
     if (!is_kept) return;
     this.files.set(path, file);
-    this.set({ plans: await this.plans() });
+    this.set({ plans: await this.plans(), dropped: { plan: path } });
     await storage.keep(new Map([[path, file]])).catch(() => undefined);
   }
 

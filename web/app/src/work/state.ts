@@ -62,6 +62,9 @@ export interface State {
   unused: LogLine[];
   waiting: LogLine[];
   plans: string[];
+  /// What was dropped or drawn last: another object whenever a file of a plan or mission was written, even one of a name
+  /// that is known. No plan: a file of a mission alone.
+  dropped: { plan?: string };
   /// Of terrain, which is there.
   tiles: number;
   progress: Progress | null;
