@@ -31,7 +31,7 @@ function Change({ text }: { text: string }) {
   return text ? <span class={`change${/less/.test(text) ? " less" : ""}`}> · {text}</span> : null;
 }
 
-function Figures({ now, measured, asking }: { now: Answered; measured?: Answered; asking: boolean }) {
+export function Figures({ now, measured, asking }: { now: Answered; measured?: Answered; asking: boolean }) {
   const { answer } = now;
   const time = mainTime(answer);
   const is_chance = answer.time_in_air_95_s.value != null;
@@ -60,7 +60,7 @@ function Figures({ now, measured, asking }: { now: Answered; measured?: Answered
       >
         <p class="figure-note">
           {answer.distance_m.value != null
-            ? <><b>half of the flights</b>, out and back</>
+            ? <>{is_chance ? <b>half of the flights</b> : "as modelled"}, out and back</>
             : inPageWords(answer.distance_m.unknown)}
           <Change text={changeOf(answer.distance_m.value, before?.distance_m.value, distance)} />
         </p>

@@ -44,7 +44,9 @@ function Figures({ answer }: { answer: AnswerDocument }) {
       <Figure label={answer.airspeed_m_per_s.value == null ? "Distance" : `Distance at ${quantity(answer.airspeed_m_per_s.value, 1, "m/s")}`} value={distance(far.value)}>
         <Unknown of={far} />
         {far.value != null && far.basis && <p class="figure-reason">{far.basis}</p>}
-        {answer.distance_across_m != null && <p class="figure-reason">{distance(answer.distance_across_m)} out, and back again</p>}
+        {answer.distance_across_m != null && (
+          <p class="figure-reason">in all, out and back along a wind of {quantity(answer.wind_m_per_s, 1, "m/s")}; {distance(answer.distance_across_m)} across it</p>
+        )}
       </Figure>
       {answer.requirement_missed && <p class="answer-missed">{answer.requirement_missed}</p>}
     </section>
