@@ -5,7 +5,7 @@ import { bundled, html, words } from "./helpers/bundle.mjs";
 import { empty, flight, grid, mission, sortie } from "./helpers/documents.mjs";
 
 globalThis.location ??= { hash: "" };
-const app = await bundled("screens/report.tsx", "sections/charge_chart.tsx", "sections/quality_map.tsx", "sections/flights.tsx", "sections/flight.tsx", "sections/missions.tsx", "sections/mission_map.tsx", "sections/answer.tsx", "sections/several_packs.tsx", "ui/chart.tsx", "ui/printed.tsx");
+const app = await bundled("screens/report.tsx", "screens/plan.tsx", "screens/answer.tsx", "work/question.ts", "sections/charge_chart.tsx", "sections/quality_map.tsx", "sections/flights.tsx", "sections/flight.tsx", "sections/missions.tsx", "sections/mission_map.tsx", "sections/answer.tsx", "sections/several_packs.tsx", "ui/chart.tsx", "ui/printed.tsx");
 const show = (type, props) => html(app.h(type, props), app);
 
 test("a document without parts is its headline, its facts and its command", () => {
@@ -105,6 +105,51 @@ test("an unknown distance is a reason, and no sentence promises it", () => {
   assert.equal(app.answerSentence({ headline: "H", time_in_air_s: answered(610.5), distance_m: answered(null, "it hovered") }), "A full pack lasts 10 min 11 s");
   assert.equal(app.answerSentence({ headline: "H", time_in_air_s: answered(610.4), distance_m: answered(4140) }), "A full pack lasts 10 min 10 s and reaches 4.1 km");
   assert.equal(app.answerSentence({ headline: "No flight was used", time_in_air_s: answered(null, "none"), distance_m: answered(null) }), "No flight was used");
+});
+
+const simulated = (rest) => ({
+  time_s: [0, 600], soc: [100, 48], compute_w: [null, null], phases: [],
+  simulation: { final_soc_percent: 48, reserve_soc_percent: 20, keeps_reserve: true, duration_s: 600, ...rest },
+});
+
+test("a plan fits where its chance is known and high, and else perhaps", () => {
+  const grade = (rest) => app.verdictOf(simulated(rest)).grade;
+  assert.equal(grade({ probability_below_reserve: 0.01 }), "good");
+  assert.equal(grade({ probability_below_reserve: 0.2 }), "doubt");
+  assert.equal(grade({ probability_below_reserve: null }), "doubt");
+  assert.match(app.verdictOf(simulated({})).detail, /its chance is unknown/);
+  const two = app.verdictOf(simulated({ packs: 2, packs_needed: 2, flights: [] }));
+  assert.deepEqual([two.grade, two.title], ["doubt", "Perhaps fits 2 packs"]);
+  assert.match(two.detail, /about half of the flights/);
+});
+
+test("a plan that fits with the stated capacity alone fits perhaps", () => {
+  const by_flights = (keeps_reserve) => ({ with_capacity_of_flights: { capacity_ah: 6.78, keeps_reserve } });
+  assert.equal(app.verdictOf(simulated({ probability_below_reserve: 0.01, ...by_flights(true) })).grade, "good");
+  const verdict = app.verdictOf(simulated({ probability_below_reserve: 0.01, ...by_flights(false) }));
+  assert.equal(verdict.grade, "doubt");
+  assert.match(verdict.detail, /with 6\.8 Ah, which the flights indicate, it misses the reserve/);
+  assert.equal(app.verdictOf(simulated({ packs: 2, packs_needed: 2, flights: [by_flights(false)] })).grade, "doubt");
+});
+
+test("what may help is enough only where a chance is known", () => {
+  const line = (help) => show(app.HelpLine, { help: { text: "2 packs", probability: null, suffices: false, ...help }, onChange() {} });
+  assert.match(line({ suffices: true, probability: 0.97 }), /mark good.*enough, 97 of 100/);
+  assert.match(line({ is_modelled: true }), /mark doubt.*perhaps: in about half of the flights/);
+  assert.match(line({}), /mark doubt.*not enough alone/);
+});
+
+test("a distance in wind is along it, and that across it is named so", () => {
+  const of = (value) => ({ value, basis: "", unknown: "" });
+  const answer = {
+    time_in_air_s: of(600), time_in_air_95_s: of(500), distance_m: of(40_000), airspeed_m_per_s: of(15), reserve_soc_percent: 20,
+    wind_m_per_s: 6, distance_across_m: 44_900, lines: [], notes: [], best_speeds: [], pastes: [], no_answer: "", failsafe_missing: "",
+  };
+  const page = words(show(app.Answer, { answer, curve: null, panel: null }));
+  assert.match(page, /in all, out and back along a wind of 6\.0 m\/s *; *44\.9 km across it/);
+  assert.match(words(show(app.Figures, { now: { answer, curve: null }, asking: false })), /half of the flights *, out and back/);
+  const unknown = { ...answer, time_in_air_95_s: { value: null, basis: "", unknown: "one flight" } };
+  assert.match(words(show(app.Figures, { now: { answer: unknown, curve: null }, asking: false })), /as modelled *, out and back/);
 });
 
 test("a line has a gap where a value is missing", () => {

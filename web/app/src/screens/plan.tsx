@@ -21,8 +21,23 @@ const fileName = (path: string) => path.split("/").pop() ?? path;
 const no_plan: PlanOptions = { plan: "FILE", blocks: [], packs: 1 };
 const drawn_area = "plans/drawn area.geojson";
 
-/// What a simulated plan comes to, in words.
-function verdictOf({ simulation, time_s, soc }: Curve): {
+/// Why a plan that keeps its reserve as modelled may not keep it; nothing where none of that is the case.
+function doubtsOf(simulation: Simulation, kept: number | null): string[] {
+  const by_flights = [simulation, ...(simulation.flights ?? [])]
+    .find((one) => one.with_capacity_of_flights?.keeps_reserve === false)?.with_capacity_of_flights;
+  return [
+    ...(simulation.uncertain ?? []).map(inPageWords),
+    ...(by_flights ? [`with ${quantity(by_flights.capacity_ah, 1, "Ah")}, which the flights indicate, it misses the reserve`] : []),
+    ...(kept != null
+      ? []
+      : [simulation.packs
+        ? "that is as modelled: each flight lands with less in about half of the flights"
+        : "nothing shows how the power of flights differs: its chance is unknown"]),
+  ];
+}
+
+/// What a simulated plan comes to, in words; it fits where 95 of 100 flights keep the reserve, as in `check`.
+export function verdictOf({ simulation, time_s, soc }: Curve): {
   grade: Grade;
   title: string;
   detail: string;
@@ -38,7 +53,8 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
   const lands =
     `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
   const words = kept != null ? chance(kept) : "";
-  const doubt = simulation.uncertain ? `${lands.slice(0, -1)}, but ${inPageWords(simulation.uncertain.join("; "))}.` : lands;
+  const doubts = doubtsOf(simulation, kept);
+  const doubt = doubts.length > 0 ? `${lands.slice(0, -1)}, but ${doubts.join("; ")}.` : lands;
   if (!simulation.keeps_reserve) {
     const where = below >= 0 && time_s[below] != null
       ? `Below the reserve of ${number(reserve, 0)} % after ${duration(time_s[below])}`
@@ -56,9 +72,9 @@ function verdictOf({ simulation, time_s, soc }: Curve): {
     detail: doubt,
     chance: words,
   };
-  if (simulation.uncertain) return {
+  if (doubts.length > 0) return {
     grade: "doubt",
-    title: "Perhaps",
+    title: simulation.packs ? `Perhaps fits ${packs}` : "Perhaps",
     detail: doubt,
     chance: words,
   };
@@ -170,7 +186,9 @@ function PlanSliders({ flown, options, change }: {
   );
 }
 
-interface Help extends Pick<PlanRemedy, "text" | "suffices" | "probability"> {
+export interface Help extends Pick<PlanRemedy, "text" | "suffices" | "probability"> {
+  /// Enough as modelled, of which no chance is known.
+  is_modelled?: boolean;
   /// Absent: none of this page's.
   change?: Partial<PlanOptions>;
 }
@@ -197,7 +215,8 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
         if (typeof found !== "string") add([{
           text: `${packs} packs`,
           change: { packs },
-          suffices: verdictOf(found.curve).grade === "good",
+          suffices: false,
+          is_modelled: verdictOf(found.curve).grade !== "bad",
           probability: null,
         }]);
       }
@@ -205,7 +224,8 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
       const remedies = await remediesOf(project, aircraft, answered, options);
       add(remedies.map(({ kind, value, ...rest }) => {
         const option = changed_by[kind];
-        return { ...rest, change: option && { [option]: value } };
+        const is_modelled = rest.suffices && rest.probability == null;
+        return { ...rest, suffices: rest.suffices && !is_modelled, is_modelled, change: option && { [option]: value } };
       }));
     })();
     return () => {
@@ -216,11 +236,11 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
 }
 
 /// A change that may help; those of this page are made by a click.
-function HelpLine({ help: { text, suffices, probability, change }, onChange }: {
+export function HelpLine({ help: { text, suffices, is_modelled, probability, change }, onChange }: {
   help: Help;
   onChange: (change: Partial<PlanOptions>) => void;
 }) {
-  const words = suffices ? "enough" : "not enough alone";
+  const words = suffices ? "enough" : is_modelled ? "perhaps: in about half of the flights" : "not enough alone";
   const line = (
     <>
       <Mark grade={suffices ? "good" : "doubt"} />

@@ -127,11 +127,13 @@ export interface Simulation {
   cut_off_at_s?: number | null;
   feasible: boolean;
   power_model?: { model: string; flights: number; mean_absolute_error_percent: number | null } | null;
-  probability_below_reserve?: number;
+  probability_below_reserve?: number | null;
+  /// With the capacity that the pack's flights indicate, where it differs.
+  with_capacity_of_flights?: { capacity_ah: number; keeps_reserve: boolean };
   packs?: number;
   packs_needed?: number;
   on_ground_s?: number;
-  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null }[];
+  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null; with_capacity_of_flights?: Simulation["with_capacity_of_flights"] }[];
 }
 
 /// A change of a plan that may make it fit, of `flightwatt check --json`.
