@@ -180,6 +180,7 @@ test("a plan that does not fit has what would help, and one that fits is saved f
   const plan = JSON.parse(await readFile(await download.path(), "utf8"));
   assert.equal(plan.fileType, "Plan");
   assert.ok(plan.mission.items.length > 10);
+  assert.match(await page.textContent('[aria-label="What was planned"]'), /no altitude is stated: 50 m above the ground/);
 });
 
 /// Corners of a rectangle from 43.56 N, 1.48 E on, as a file that is dropped.
@@ -212,6 +213,25 @@ test("an edited plan of the same name has its own verdict and keeps the sliders"
   assert.notEqual(await page.textContent(".plan-facts"), facts);
   assert.notEqual(await outline(), drawn);
   assert.match(await page.textContent(".command code"), /--spacing 70/);
+});
+
+test("what is saved of a plan is of that plan, whatever was flown since for what would help", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [areaOf("large.geojson", 0.02, 0.02)], "Choose a plan");
+  await page.waitForSelector(".verdict-band.bad", patience);
+  await page.waitForSelector(".help:has-text('packs'):has-text('about half of the flights')", patience);
+  const saved = async (button) => {
+    const [download] = await Promise.all([page.waitForEvent("download", patience), page.click(`.plan-side button:text-is("${button}")`)]);
+    return readFile(await download.path(), "utf8");
+  };
+  const last_s = Number((await saved(" Charge (CSV)")).trim().split("\n").at(-1).split(",")[0]);
+  const minutes = Math.floor(last_s / 60);
+  assert.ok((await page.textContent(".plan-facts")).includes(`${Math.floor(minutes / 60)} h ${minutes % 60} min`), String(last_s));
+  await page.selectOption('[aria-label="Format for the autopilot"]', "px4");
+  assert.match(await saved(" File"), /BAT/);
 });
 
 test("a plan that a slider makes unflyable keeps its sliders", { skip, ...patience }, async (t) => {

@@ -380,20 +380,24 @@ function SaveButtons({ project, aircraft, answered, flown }: {
   const plans = is_mission || !answered ? [] : plan_formats;
   const [chosen, setFormat] = useState("");
   const format = chosen || (plans[0] ?? export_formats[0])[0];
-  const [failed, setFailed] = useState("");
+  const [said, setSaid] = useState<{ of: FlownPlan; failed: string; remarks: string[] } | null>(null);
+  const say = (failed: string, remarks: string[] = []) => setSaid({ of: flown, failed, remarks });
   const name = fileName(flown.options.plan).replace(/\.\w+$/, "");
   const savePlan = async () => {
     if (!answered) return;
-    const files = await planFiles(project, aircraft, answered, flown.options, format);
-    setFailed(typeof files === "string" ? files : "");
-    if (typeof files === "string") return;
-    for (const file of files) save(`${name}-${file.name}`, file.text, "text/plain");
+    const planned = await planFiles(project, aircraft, answered, flown.options, format);
+    if (typeof planned === "string") return say(planned);
+    say("", planned.remarks);
+    for (const file of planned.files) save(`${name}-${file.name}`, file.text, "text/plain");
   };
   const saveExport = async () => {
-    const path = is_mission ? flown.options.plan : "plan-mission.toml";
-    const result = await project.run(["export", path, "--format", format]);
-    if (result.code !== 0) return setFailed(errorsOf(result));
-    setFailed("");
+    const path = is_mission ? flown.options.plan : "export-mission.toml";
+    // Other plans and questions may have been flown since.
+    if (!is_mission) await project.write(path, flown.mission);
+    const args = ["export", path, "--format", format];
+    const result = await (answered ? project.runOnAnswer(aircraft.id, answered, args) : project.run(args));
+    if (result.code !== 0) return say(errorsOf(result));
+    say("");
     save(`${name}-${format}${export_formats.find((one) => one[0] === format)?.[2] ?? ""}`, result.out, "text/plain");
   };
   return (
@@ -406,7 +410,7 @@ function SaveButtons({ project, aircraft, answered, flown }: {
         <button
           type="button"
           class="quiet"
-          onClick={() => void project.text("curve.csv").then((text) => save(`${name}-charge.csv`, text, "text/csv"))}
+          onClick={() => save(`${name}-charge.csv`, flown.curve.csv, "text/csv")}
         >
           <Icon name="save" /> Charge (CSV)
         </button>
@@ -429,7 +433,10 @@ function SaveButtons({ project, aircraft, answered, flown }: {
           <Icon name="save" /> File
         </button>
       </p>
-      {failed && <p class="small">{failed}</p>}
+      {said?.of === flown && said.failed && <p class="small">{said.failed}</p>}
+      {said?.of === flown && said.remarks.length > 0 && (
+        <ul class="rests" aria-label="What was planned">{said.remarks.map((one) => <li>{one}</li>)}</ul>
+      )}
     </>
   );
 }

@@ -1,10 +1,11 @@
 // The charge over a mission, from the table of `simulate`.
-import { numbers, texts, type Csv } from "./csv";
+import { numbers, parseCsv, texts } from "./csv";
 import type { Simulation } from "./documents";
 import type { Curve } from "./state";
 
 /// Returns the charge and the phases of a table of `simulate`.
-export function curveOf(table: Csv, simulation: Simulation): Curve {
+export function curveOf(csv: string, simulation: Simulation): Curve {
+  const table = parseCsv(csv);
   const time_s = numbers(table, "time_s").map((value) => value ?? 0);
   const phases: Curve["phases"] = [];
   texts(table, "phase").forEach((name, i) => {
@@ -13,5 +14,5 @@ export function curveOf(table: Csv, simulation: Simulation): Curve {
     if (last?.name === name) last.to = at;
     else phases.push({ name, from: last?.to ?? at, to: at });
   });
-  return { time_s, soc: numbers(table, "soc_percent"), compute_w: numbers(table, "compute_w"), phases, simulation };
+  return { time_s, soc: numbers(table, "soc_percent"), compute_w: numbers(table, "compute_w"), phases, simulation, csv };
 }

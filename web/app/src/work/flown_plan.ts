@@ -70,12 +70,10 @@ export function planCommand(folder: string, options: PlanOptions, question: Ques
 /// Of a plan, for its chance.
 const drawn_flights = 1000;
 
-function remarksOf(err: string): string[] {
-  const lines = err.split("\n").filter((line) => /: (warning|chosen|note): /.test(line));
-  return [...new Set(lines.map((line) => line.replace(
-    /^flightwatt[\w-]*: (warning|chosen|note): /,
-    "",
-  ).replace(/^plan-mission: /, "")))];
+/// Returns the lines of some kinds, without the names of program and mission.
+function remarksOf(err: string, kinds = "(warning|chosen|note): "): string[] {
+  const begin = new RegExp(`^flightwatt[\\w-]*: ${kinds}(plan-(mission|packs): )?`);
+  return [...new Set(err.split("\n").filter((line) => begin.test(line)).map((line) => line.replace(begin, "")))];
 }
 
 function keyOf(text: string, key: string): number | null {
@@ -107,14 +105,15 @@ export interface PlanFile {
   text: string;
 }
 
-/// Returns the files of a plan's flights in a format of `plan --format`, or why there are none.
+/// Returns the files of a plan's flights in a format of `plan --format` with what `plan` says of them, or why there are
+/// none.
 export async function planFiles(
   project: Project,
   aircraft: Aircraft,
   answered: Answered,
   options: PlanOptions,
   format: string,
-): Promise<PlanFile[] | string> {
+): Promise<{ files: PlanFile[]; remarks: string[] } | string> {
   const [mission, folder] = ["plan-packs.toml", "plan-packs"];
   const args = newMissionArguments(aircraft.folder, options, answered.question, true);
   return project.withAnswer(aircraft.id, answered, async (engine) => {
@@ -123,10 +122,11 @@ export async function planFiles(
     const planned = await engine.run(["plan", mission, "--packs", "--format", format, "-o", folder, "--json"]);
     if (planned.code !== 0) return errorsOf(planned);
     const { flights } = JSON.parse(planned.out) as Simulation;
-    return Promise.all((flights ?? []).map(async ({ pack }) => {
+    const files = await Promise.all((flights ?? []).map(async ({ pack }) => {
       const name = `pack-${pack}${plan_endings[format] ?? ""}`;
       return { name, text: await project.text(`${folder}/${name}`) };
     }));
+    return { files, remarks: remarksOf(planned.err, "((warning|chosen|note): )?") };
   });
 }
 

@@ -443,7 +443,7 @@ export class Project {
     const final = drawn?.out ? drawn : await this.engine.run(simulate);
     if (!final.out) return errorsOf(final);
     const simulation = JSON.parse(final.out) as Simulation;
-    const curve = curveOf(parseCsv(await this.text(csv)), simulation);
+    const curve = curveOf(await this.text(csv), simulation);
     if (drawn?.out && simulation.probability_below_reserve != null) {
       const table = parseCsv(await this.text(band));
       curve.band = {

@@ -24,6 +24,8 @@ export interface Curve {
   phases: { name: string; from: number; to: number }[];
   band?: { time_s: number[]; low: (number | null)[]; high: (number | null)[] };
   simulation: Simulation;
+  /// The same as the table that the program wrote.
+  csv: string;
 }
 
 export interface Answered {
