@@ -132,6 +132,34 @@ test("a slider asks anew, keeps the old answer in sight, and takes it back", { s
   );
 });
 
+test("a refused question greys the old answer beside its error, and the sliders take it back", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.waitForSelector(".parameters", patience);
+  await page.fill(".field input", "99999999");
+  await page.press(".field input", "Tab");
+  await page.waitForSelector(".card.failed", patience);
+  assert.match(await page.textContent(".card.failed"), /--home-distance|the distance from home/);
+  assert.equal(await page.locator(".figures.old, .parameters.old").count(), 2);
+  assert.ok(await page.isDisabled("button:has-text('Copy for ArduPilot')"));
+  await page.click("text=As measured");
+  await page.waitForSelector(".figures:not(.old)", patience);
+  assert.equal(await page.locator(".card.failed").count(), 0);
+  await page.waitForSelector("button:has-text('Copy for ArduPilot'):enabled", patience);
+});
+
+test("a capacity that contradicts the flights is warned of, and no time of it is green", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  assert.equal(await page.locator(".card.warned").count(), 0);
+  await page.locator('input[aria-label="Pack capacity"]').fill("1.5");
+  await page.waitForSelector(".card.warned", patience);
+  assert.match(await page.textContent(".card.warned"), /the capacity of 1.5 Ah contradicts the flights, which indicate/);
+  assert.equal(await page.locator(".figures .ok").count(), 0);
+});
+
 test("an area is flown, and has a verdict with its command", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);

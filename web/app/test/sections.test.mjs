@@ -143,11 +143,13 @@ test("a distance in wind is along it, and that across it is named so", () => {
   const of = (value) => ({ value, basis: "", unknown: "" });
   const answer = {
     time_in_air_s: of(600), time_in_air_95_s: of(500), distance_m: of(40_000), airspeed_m_per_s: of(15), reserve_soc_percent: 20,
-    wind_m_per_s: 6, distance_across_m: 44_900, lines: [], notes: [], best_speeds: [], pastes: [], no_answer: "", failsafe_missing: "",
+    capacity_ah: of(5), flights_capacity_ah_interval_95: { low: 4, high: 6 }, wind_m_per_s: 6, distance_across_m: 44_900, lines: [], notes: [], best_speeds: [], pastes: [], no_answer: "", failsafe_missing: "",
   };
   const page = words(show(app.Answer, { answer, curve: null, panel: null }));
   assert.match(page, /in all, out and back along a wind of 6\.0 m\/s *; *44\.9 km across it/);
   assert.match(words(show(app.Figures, { now: { answer, curve: null }, asking: false })), /half of the flights *, out and back/);
+  assert.match(show(app.Figures, { now: { answer, curve: null } }), /class="ok"/);
+  assert.doesNotMatch(show(app.Figures, { now: { answer: { ...answer, capacity_ah: of(12) }, curve: null } }), /class="ok"/);
   const unknown = { ...answer, time_in_air_95_s: { value: null, basis: "", unknown: "one flight" } };
   assert.match(words(show(app.Figures, { now: { answer: unknown, curve: null }, asking: false })), /as modelled *, out and back/);
 });

@@ -2,7 +2,7 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { Dots } from "../sections/answer";
-import { Card, Command, Figure, Mark, Verdict, type Grade } from "../ui/basics";
+import { Card, Command, Figure, Folded, Mark, Verdict, type Grade } from "../ui/basics";
 import { distance, duration, number, quantity } from "../ui/format";
 import { Plot, type Line } from "../ui/plot";
 import type { Answer, Known } from "../work/documents";
@@ -31,14 +31,26 @@ function Change({ text }: { text: string }) {
   return text ? <span class={`change${/less/.test(text) ? " less" : ""}`}> · {text}</span> : null;
 }
 
-export function Figures({ now, measured, asking }: { now: Answered; measured?: Answered; asking: boolean }) {
+/// Whether the capacity that was stated is none that the flights allow.
+const contradictsFlights = ({ capacity_ah: { value }, flights_capacity_ah_interval_95: flights }: Answer) =>
+  value != null && flights != null && (value < flights.low || value > flights.high);
+
+interface FiguresProps {
+  now: Answered;
+  measured?: Answered;
+  asking: boolean;
+  /// Whether they answer another question than that of now.
+  is_old: boolean;
+}
+
+export function Figures({ now, measured, asking, is_old }: FiguresProps) {
   const { answer } = now;
   const time = mainTime(answer);
   const is_chance = answer.time_in_air_95_s.value != null;
   const before = measured && now !== measured ? measured.answer : undefined;
   const speed = answer.airspeed_m_per_s.value;
   return (
-    <section class={`card figures${asking ? " old" : ""}`} aria-label="Time and distance" aria-busy={asking}>
+    <section class={`card figures${is_old ? " old" : ""}`} aria-label="Time and distance" aria-busy={asking}>
       <Figure
         label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`}
         value={duration(time.value)}
@@ -46,7 +58,7 @@ export function Figures({ now, measured, asking }: { now: Answered; measured?: A
         {is_chance && <Dots of_100={95} />}
         <p class="figure-note">
           {is_chance
-            ? <b class="ok">in 95 of 100 flights</b>
+            ? <b class={contradictsFlights(answer) ? "" : "ok"}>in 95 of 100 flights</b>
             : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
           <Change text={changeOf(time.value, before && mainTime(before).value, duration)} />
         </p>
@@ -340,6 +352,21 @@ function headline({ answer, question }: Answered): string {
   return `${begin} full pack lasts ${duration(time.value)}${chance}`;
 }
 
+/// What the program warns of: the first, and the others folded.
+export function Warnings({ texts: [first, ...others] }: { texts: string[] }) {
+  if (first == null) return null;
+  return (
+    <Card class="warned">
+      <Verdict grade="doubt">{inPageWords(first)}</Verdict>
+      {others.length > 0 && (
+        <Folded title={others.length === 1 ? "1 warning more" : `${others.length} warnings more`}>
+          <ul class="rests">{others.map((text) => <li>{inPageWords(text)}</li>)}</ul>
+        </Folded>
+      )}
+    </Card>
+  );
+}
+
 /// What to do where the answer lacks its capacity.
 function CapacityAsked({ aircraft, project }: { aircraft: Aircraft; project: Project }) {
   const answer = aircraft.now?.answer;
@@ -367,11 +394,15 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
       <>
         <h1>{aircraft.name}: no answer</h1>
         <Card><Verdict grade="bad">{aircraft.failed}</Verdict></Card>
+        {optionsOf(aircraft.question).length > 0 && (
+          <button type="button" class="quiet" onClick={() => project.ask(aircraft.id, {})}>As measured</button>
+        )}
       </>
     ) : (
       <h1 aria-live="polite">{aircraft.name}: computing</h1>
     );
-  const asking = project.isAsking(aircraft.id);
+  const is_old = project.isOld(aircraft.id);
+  const asking = is_old && !aircraft.failed;
   const { answer } = now;
   const logs = logsShown(aircraft.logs.map((line) => line.path));
   const command = ["flightwatt", logs, ...optionsOf(aircraft.question).map(quoted)].join(" ");
@@ -384,15 +415,16 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
             {answer.packs[0]?.cells ? ` · ${answer.packs[0].cells} cells` : ""}
             {answer.capacity_ah.value != null ? ` · ${quantity(answer.capacity_ah.value, 1, "Ah")}` : ""}
           </p>
-          <h1 aria-live="polite">{headline(now)}</h1>
+          <h1 class={is_old ? "old" : ""} aria-live="polite">{headline(now)}</h1>
         </div>
       </header>
       {aircraft.failed && <Card class="failed"><Verdict grade="bad">{aircraft.failed}</Verdict></Card>}
+      <Warnings texts={now.warnings} />
       <CapacityAsked aircraft={aircraft} project={project} />
       <div class="answer">
         <WhatIf project={project} aircraft={aircraft} asking={asking} />
         <div class="answer-middle">
-          <Figures now={now} measured={measured} asking={asking} />
+          <Figures now={now} measured={measured} asking={asking} is_old={is_old} />
           <ChargeCard now={now} measured={measured} />
           <div class="pair">
             <RestsOn answer={answer} />
@@ -400,7 +432,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
           </div>
         </div>
         <div class="answer-right">
-          <FailsafeCard project={project} aircraft={aircraft} answered={now} />
+          <FailsafeCard project={project} aircraft={aircraft} answered={now} is_old={is_old} />
           <PackHealth answer={answer} />
         </div>
       </div>

@@ -96,18 +96,21 @@ function useExport(project: Project, aircraft: Aircraft, answered: Answered, aut
   return { text, stale };
 }
 
-function Parameters({ project, aircraft, answered, autopilot }: {
+interface FailsafeProps {
   project: Project;
   aircraft: Aircraft;
   answered: Answered;
-  autopilot: Autopilot;
-}) {
+  /// Whether that answers another question than that of now: nothing of it is to be copied.
+  is_old: boolean;
+}
+
+function Parameters({ project, aircraft, answered, autopilot, is_old }: FailsafeProps & { autopilot: Autopilot }) {
   const { text: written, stale } = useExport(project, aircraft, answered, autopilot);
   if (!written) return <p class="soft">Computing</p>;
   if (written.failed) return <p>{written.failed}</p>;
   return (
     <>
-      <dl class={`facts parameters${stale ? " old" : ""}`} aria-busy={stale}>
+      <dl class={`facts parameters${is_old || stale ? " old" : ""}`} aria-busy={stale}>
         {parametersOf(written.text).map(([name, value]) => (
           <div>
             <dt><code>{name}</code></dt>
@@ -116,10 +119,11 @@ function Parameters({ project, aircraft, answered, autopilot }: {
         ))}
       </dl>
       <p class="buttons">
-        <CopyButton primary text={written.text} label={`Copy for ${autopilot.name}`} />
+        <CopyButton primary text={written.text} label={`Copy for ${autopilot.name}`} disabled={is_old || stale} />
         <button
           type="button"
           class="quiet"
+          disabled={is_old || stale}
           onClick={() => save(`failsafe-${autopilot.id}${autopilot.ending}`, written.text, "text/plain")}
         >
           <Icon name="save" /> File
@@ -130,11 +134,7 @@ function Parameters({ project, aircraft, answered, autopilot }: {
   );
 }
 
-export function FailsafeCard({ project, aircraft, answered }: {
-  project: Project;
-  aircraft: Aircraft;
-  answered: Answered;
-}) {
+export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafeProps) {
   const [chosen, setChosen] = useState<Autopilot>(autopilots[0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
   const home_m = aircraft.question.home_m ?? card?.home_distance_m;
@@ -168,11 +168,10 @@ export function FailsafeCard({ project, aircraft, answered }: {
               </button>
             ))}
           </div>
-          <Parameters project={project} aircraft={aircraft} answered={answered} autopilot={chosen} />
+          <Parameters project={project} aircraft={aircraft} answered={answered} autopilot={chosen} is_old={is_old} />
           {card.low && <p class="small">
             The return begins too late in{" "}
-            {chance(card.low.probability_too_late)}{" "}
-            flights.
+            {card.low.probability_too_late != null ? `${chance(card.low.probability_too_late)} flights` : "an unknown part of the flights"}.
           </p>}
           <Folded title="What the failsafe rests on">
             <ul class="rests">

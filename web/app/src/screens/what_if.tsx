@@ -115,7 +115,8 @@ function hintOf(aircraft: Aircraft, slider: SliderOf): string {
 }
 
 export function WhatIf({ project, aircraft, asking }: { project: Project; aircraft: Aircraft; asking: boolean }) {
-  const { measured, question, now } = aircraft;
+  const { question, now } = aircraft;
+  const measured = aircraft.measured ?? now;
   if (!measured || !now) return null;
   const set = (key: keyof Question, value: number | undefined) => project.ask(
     aircraft.id,

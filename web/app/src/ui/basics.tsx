@@ -90,7 +90,7 @@ export function Folded(props: Children & { title: string; id?: string }) {
 }
 
 /// A button that copies a text and says that it did.
-export function CopyButton({ text, label = "Copy", primary }: { text: string; label?: string; primary?: boolean }) {
+export function CopyButton({ text, label = "Copy", primary, disabled }: { text: string; label?: string; primary?: boolean; disabled?: boolean }) {
   const [copied, setCopied] = useState(false);
   const copy = async () => {
     try {
@@ -107,7 +107,7 @@ export function CopyButton({ text, label = "Copy", primary }: { text: string; la
     setTimeout(() => setCopied(false), 2000);
   };
   return (
-    <button type="button" class={primary ? "primary" : "quiet"} onClick={copy}>
+    <button type="button" class={primary ? "primary" : "quiet"} disabled={disabled} onClick={copy}>
       <Icon name="copy" /> <span aria-live="polite">{copied ? "Copied" : label}</span>
     </button>
   );

@@ -35,7 +35,7 @@ export interface Pack {
 interface FailsafeAction {
   soc_percent: number;
   remaining_mah: number;
-  probability_too_late: number;
+  probability_too_late: number | null;
   voltage: { voltage_v: number } | null;
 }
 

@@ -29,13 +29,16 @@ const kept_files = /\.(json|toml|csv)$/;
 const decoder = new TextDecoder();
 const names = (path: string) => path.split("/").pop() ?? path;
 
-/// Returns what a run printed as errors, without the program's name.
+/// Returns the lines of a kind ("error") that a run printed, each once and without the program's name.
+function printed(result: RunResult, kind: string): string[] {
+  const begin = new RegExp(`^flightwatt[\\w-]*: ${kind}: `);
+  const lines = result.err.split("\n").filter((line) => line.includes(`: ${kind}: `));
+  return [...new Set(lines.map((line) => line.replace(begin, "").replaceAll(`${logs_folder}/`, "")))];
+}
+
+/// Returns what a run printed as errors, or why it ended.
 export function errorsOf(result: RunResult): string {
-  const lines = result.err.split("\n").filter((line) => /: error: /.test(line));
-  return lines.map((line) => line.replace(
-    /^flightwatt[\w-]*: error: /,
-    "",
-  ).replaceAll(`${logs_folder}/`, "")).join("\n") ||
+  return printed(result, "error").join("\n") ||
     result.err.trim().split("\n").pop() || `it ended with code ${result.code}`;
 }
 
@@ -328,7 +331,7 @@ export class Project {
 
   /// Asks; while an answer is under way, the latest question alone is next.
   ask(id: string, question: Question) {
-    this.setAircraft(id, { question });
+    this.setAircraft(id, { question, failed: undefined });
     this.settings.questions = { ...this.settings.questions, [id]: question };
     this.keepSettings();
     const is_waiting = this.wanted.has(id);
@@ -342,9 +345,10 @@ export class Project {
     }, true);
   }
 
-  isAsking(id: string): boolean {
+  /// Whether the answer that is known is one to another question: that of now is computed, or was refused.
+  isOld(id: string): boolean {
     const aircraft = this.state.aircraft.find((one) => one.id === id);
-    if (!aircraft || aircraft.failed) return false;
+    if (!aircraft) return false;
     return JSON.stringify(aircraft.question) !== JSON.stringify(aircraft.now?.question);
   }
 
@@ -371,7 +375,8 @@ export class Project {
         aircraft,
         question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {},
       );
-      this.setAircraft(id, { measured: typeof measured === "string" ? undefined : measured, hints: {} });
+      // Where it is refused the old one stays, whose sliders take that back.
+      if (typeof measured !== "string") this.setAircraft(id, { measured, hints: {} });
     }
     const now = await this.answered(aircraft, question);
     if (typeof now === "string") this.setAircraft(id, { failed: now });
@@ -424,7 +429,8 @@ export class Project {
     const curve = answer.time_in_air_s.value != null
       ? await this.curve(`${aircraft.folder}/answer-mission.toml`)
       : null;
-    return { question, answer, curve, seconds: (performance.now() - started) / 1000 };
+    const seconds = (performance.now() - started) / 1000;
+    return { question, answer, curve, seconds, warnings: printed(result, "warning") };
   }
 
   /// Returns the charge over a mission, with a band where flights differ.

@@ -33,6 +33,8 @@ export interface Answered {
   answer: Answer;
   curve: Curve | null;
   seconds: number;
+  /// Of the program, in its words.
+  warnings: string[];
 }
 
 export interface Aircraft {
