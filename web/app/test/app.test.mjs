@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync } from "node:fs";
-import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import { copyFile, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
 import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
@@ -223,6 +223,24 @@ const move = (page, label, value) => page.locator(`input[aria-label="${label}"]`
 /// Waits until nothing is computed.
 const settled = (page) => page.waitForFunction(
   () => document.querySelector(".verdict-band[aria-busy=false]") && !document.querySelector("[aria-busy=true]"), null, patience);
+
+test("the command of a plan gives the number of the screen in an empty folder", { skip: skip || !program, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  const area = areaOf("field.geojson", 0.01, 0.005);
+  await choose(page, [area], "Choose a plan");
+  await page.waitForSelector(".verdict-band.good", patience);
+  const empty = await mkdtemp(path.join(os.tmpdir(), "flightwatt-command-"));
+  t.after(() => rm(empty, { recursive: true, force: true }));
+  await writeFile(path.join(empty, area.name), area.buffer);
+  for (const file of [1, 2, 3].flatMap(sample)) await copyFile(file, path.join(empty, path.basename(file)));
+  const line = (await page.textContent(".command code")).replaceAll(/\bflightwatt (?=\S)/g, `'${program}' `);
+  const printed = execFileSync("sh", ["-c", `${line} --json`], { cwd: empty, stdio: ["ignore", "pipe", "ignore"], encoding: "utf8" });
+  const { final_soc_percent } = JSON.parse(printed.slice(printed.indexOf('{\n  "format"')));
+  assert.match(await page.textContent(".verdict-band"), new RegExp(`Lands with ${final_soc_percent.toFixed(1)} %`));
+});
 
 test("an edited plan of the same name has its own verdict and keeps the sliders", { skip, ...patience }, async (t) => {
   const page = await open(t);

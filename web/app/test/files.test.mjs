@@ -7,6 +7,8 @@ const files = await bundled("work/files.ts");
 const csv = await bundled("work/csv.ts");
 const shapes = await bundled("work/plan_shapes.ts");
 const question = await bundled("work/question.ts");
+const { Project } = await bundled("work/project.ts");
+const flown = await bundled("work/flown_plan.ts");
 
 test("a path never leads out of its folder", () => {
   assert.equal(files.safePath("../../etc/passwd"), "etc/passwd");
@@ -73,5 +75,32 @@ test("a question is the options of the program, and nothing is asked by nothing"
 });
 
 test("a shell takes the names of logs as they are", () => {
-  assert.equal(question.logsShown(["logs/a b.bin", "logs/-rf", "logs/it's"]), `'a b.bin' ./-rf 'it'\\''s'`);
+  assert.equal(question.inputsShown(["logs/a b.bin", "logs/-rf", "logs/it's"]), `'a b.bin' ./-rf 'it'\\''s'`);
+});
+
+test("a command of many logs names the one of several aircraft, and every command the map of columns", () => {
+  const logs = ["a", "b", "c", "d", "e"].map((name) => `logs/${name}.csv`);
+  assert.equal(question.inputsShown(logs), "LOGS");
+  assert.equal(question.inputsShown(logs, "logs/my map.toml", "Matrice 100"), "LOGS --aircraft 'Matrice 100' --columns 'my map.toml'");
+  assert.equal(question.inputsShown(logs.slice(3), "logs/map.toml", "7"), "d.csv e.csv --columns map.toml");
+});
+
+test("logs that are read with a map of columns are answered with it", async () => {
+  const project = new Project({ write: async () => {}, run: async () => ({ code: 1, out: "", err: "" }), cancel() {} });
+  const dropped = ["a.csv", "map.toml"].map((name) => ({ path: name, file: new File(["x"], name) }));
+  await project.add(dropped);
+  const log = { path: "logs/a.csv" };
+  const text = project.answerArguments({ logs: [log], folder: "out" }, {}).join(" ");
+  assert.match(text, /^answer logs\/a\.csv --columns logs\/map\.toml /);
+  assert.match(project.batchArguments().join(" "), /--columns logs\/map\.toml$/);
+  assert.equal(project.inputsShown([log]), "a.csv --columns map.toml");
+});
+
+test("the commands of a plan work one after the other in an empty folder", () => {
+  const options = { plan: "plans/field.geojson", blocks: [], packs: 1 };
+  assert.equal(
+    flown.planCommand("a.bin", "flightwatt-out", options, { capacity_ah: 5, temperature: 0, reserve: 30 }),
+    "flightwatt a.bin --capacity 5 --temperature 0 && flightwatt new-mission --model flightwatt-out/model.toml " +
+      "--battery flightwatt-out/answer-pack.toml --reserve 30 --plan field.geojson -o plan.toml && flightwatt simulate plan.toml --samples 1000",
+  );
 });

@@ -7,7 +7,7 @@ import { distance, duration, number, quantity } from "../ui/format";
 import { Plot, type Line } from "../ui/plot";
 import type { Answer, Known } from "../work/documents";
 import { type Aircraft, type Answered, type Curve, type Project } from "../work/project";
-import { asWords, inPageWords, logsShown, optionsOf, quoted } from "../work/question";
+import { asWords, inPageWords, optionsOf, quoted } from "../work/question";
 import { FailsafeCard } from "./failsafe";
 import { WhatIf } from "./what_if";
 
@@ -194,7 +194,7 @@ function ChargeCard({ now, measured }: { now: Answered; measured?: Answered }) {
 /// Returns which mark a basis gets; the program's words begin with it.
 export function basisOf(text: string): "measured" | "physics" | "assumption" {
   if (/^physics/.test(text)) return "physics";
-  return /^(assum|estimated)/.test(text) ? "assumption" : "measured";
+  return /^(assum|estimated|as given)/.test(text) ? "assumption" : "measured";
 }
 
 function RestsOn({ answer }: { answer: Answer }) {
@@ -404,8 +404,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
   const is_old = project.isOld(aircraft.id);
   const asking = is_old && !aircraft.failed;
   const { answer } = now;
-  const logs = logsShown(aircraft.logs.map((line) => line.path));
-  const command = ["flightwatt", logs, ...optionsOf(aircraft.question).map(quoted)].join(" ");
+  const command = ["flightwatt", project.inputsShown(aircraft.logs, aircraft), ...optionsOf(aircraft.question).map(quoted)].join(" ");
   return (
     <>
       <header class="screen-head">

@@ -9,7 +9,6 @@ import { Table, type Column } from "../ui/table";
 import { numbers, parseCsv, texts, track, type Csv } from "../work/csv";
 import type { Pack } from "../work/documents";
 import type { Aircraft, LogLine, Project, State } from "../work/project";
-import { logsShown } from "../work/question";
 import { healthGrade, healthWord, NoLogs } from "./answer";
 import { Sparkline } from "./logs";
 
@@ -325,8 +324,8 @@ function SaveTable({ project, state }: { project: Project; state: State }) {
 }
 
 /// The command of one aircraft's flights and packs.
-function trendsCommand(aircraft: Aircraft | undefined): string {
-  return `flightwatt trends ${logsShown((aircraft?.logs ?? []).map((line) => line.path))} --ledger packs.csv`;
+function trendsCommand(project: Project, aircraft: Aircraft): string {
+  return `flightwatt trends ${project.inputsShown(aircraft.logs, aircraft)} --ledger packs.csv`;
 }
 
 export function FlightsScreen({ project, state }: { project: Project; state: State }) {
@@ -373,7 +372,7 @@ export function FlightsScreen({ project, state }: { project: Project; state: Sta
         {row && <FlightCard key={row.line.path} project={project} row={row} />}
       </div>
       <Packs state={state} />
-      <Command line={trendsCommand(row?.aircraft)} />
+      {row && <Command line={trendsCommand(project, row.aircraft)} />}
     </>
   );
 }

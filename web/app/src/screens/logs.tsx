@@ -5,7 +5,6 @@ import { date, duration, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
 import { filesOfInput, type Dropped } from "../work/files";
 import type { Aircraft, LogLine, Project, State } from "../work/project";
-import { logsShown } from "../work/question";
 
 const states = {
   waiting: { grade: "none", word: "Waiting" },
@@ -243,12 +242,12 @@ function heading(state: State): string {
   return `${aircraft}: ${used} ${used === 1 ? "log" : "logs"} used${unused}`;
 }
 
-function commandOf(state: State): string {
-  const logs = [...state.aircraft.flatMap((one) => one.logs), ...state.unused].map((line) => line.path);
+function commandOf(project: Project, state: State): string {
+  const logs = [...state.aircraft.flatMap((one) => one.logs), ...state.unused];
   const only = state.aircraft.length === 1 ? state.aircraft[0] : undefined;
   const capacity = only?.question.capacity_ah;
   const each = state.aircraft.length > 1 ? " --each" : "";
-  return `flightwatt ${logsShown(logs)}${each}${capacity ? ` --capacity ${capacity}` : ""}`;
+  return `flightwatt ${project.inputsShown(logs)}${each}${capacity ? ` --capacity ${capacity}` : ""}`;
 }
 
 export function LogsScreen({ project, state }: { project: Project; state: State }) {
@@ -294,7 +293,7 @@ export function LogsScreen({ project, state }: { project: Project; state: State 
       <p class="kept">
         <Icon name="lock" /> Kept in this browser until you press “Forget all”. Nothing leaves this computer.
       </p>
-      <Command line={commandOf(state)} />
+      <Command line={commandOf(project, state)} />
     </>
   );
 }

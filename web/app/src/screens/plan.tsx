@@ -631,7 +631,9 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           />
         )}
       </div>
-      <Command line={planCommand(aircraft.folder, shown?.options ?? options ?? no_plan, answered?.question)} />
+      <Command line={planCommand(
+        project.inputsShown(aircraft.logs, aircraft), project.folderShown(aircraft), shown?.options ?? options ?? no_plan, answered?.question,
+      )} />
     </>
   );
 }

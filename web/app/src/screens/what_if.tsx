@@ -4,7 +4,7 @@ import { Slider } from "../ui/slider";
 import type { Aircraft, Answered, Project } from "../work/project";
 import { isMeasured } from "../work/project";
 import type { Question } from "../work/question";
-import { changeOf, mainTime } from "./answer";
+import { basisOf, changeOf, mainTime } from "./answer";
 
 interface SliderOf {
   name: string;
@@ -75,7 +75,7 @@ function slidersOf(measured: Answered, question: Question): SliderOf[] {
       label: "Pack capacity",
       unit: "Ah",
       decimals: 1,
-      basis: "measured",
+      basis: question.capacity_ah != null ? "assumption" : basisOf(answer.capacity_ah.basis),
       range: [0.1 * Math.ceil(2.5 * capacity), most, 0.1],
       base: question.capacity_ah == null ? answer.capacity_ah.value : null,
       base_words: answer.capacity_ah.value != null ? quantity(answer.capacity_ah.value, 1, "Ah") : "unknown",

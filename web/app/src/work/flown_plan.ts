@@ -3,7 +3,7 @@ import type { Engine } from "../engine/engine";
 import { numbers, parseCsv, texts } from "./csv";
 import type { PathSummary, PlanBlock, PlanRemedy, Simulation } from "./documents";
 import { errorsOf, type Aircraft, type Answered, type Curve, type Project } from "./project";
-import { quoted, type Question } from "./question";
+import { optionsOf, quoted, type Question } from "./question";
 
 export interface PlanOptions {
   plan: string;
@@ -58,13 +58,14 @@ function newMissionArguments(folder: string, options: PlanOptions, question: Que
   ];
 }
 
-/// Returns the commands that give the same.
-export function planCommand(folder: string, options: PlanOptions, question: Question = {}): string {
+/// Returns the commands that give the same, in an empty folder: `inputs` are the logs, whose results are in `folder`.
+export function planCommand(inputs: string, folder: string, options: PlanOptions, question: Question = {}): string {
   const samples = options.packs > 1 ? "" : ` --samples ${drawn_flights}`;
   const mission = quoted(options.plan.replace(/^missions\//, ""));
   if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${mission}${samples}`;
   const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, question);
-  return `flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}`;
+  const answer = ["flightwatt", inputs, ...optionsOf({ capacity_ah: question.capacity_ah, temperature: question.temperature })];
+  return `${answer.join(" ")} && flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}`;
 }
 
 /// Of a plan, for its chance.

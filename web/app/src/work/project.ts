@@ -8,7 +8,7 @@ import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, LogRecord, Manifest, Simulation } from "./documents";
 import { freePath, kindOf, safePath, tileName, type Dropped } from "./files";
 import * as storage from "./keep";
-import { optionsOf, type Question } from "./question";
+import { inputsShown, isByFolder, optionsOf, type Question } from "./question";
 import { WorkQueue } from "./queue";
 import { logs_folder, type Aircraft, type Answered, type Curve, type LogLine, type State } from "./state";
 
@@ -227,10 +227,28 @@ export class Project {
 
   // --- reading logs
 
+  /// The map of the columns of tables.
+  private get columns(): string | undefined {
+    return this.pathsOf(logs_folder).find((path) => kindOf(path, new Set()) === "columns");
+  }
+
+  private columnsOption(): string[] {
+    return this.columns != null ? ["--columns", this.columns] : [];
+  }
+
+  /// Returns logs as a command line has them, all or those of an aircraft.
+  inputsShown(logs: LogLine[], of?: Aircraft): string {
+    return inputsShown(logs.map(({ path }) => path), this.columns, this.state.aircraft.length > 1 ? of?.id : undefined);
+  }
+
+  /// Returns the folder of the results of the command that answers for an aircraft.
+  folderShown({ logs, folder }: Aircraft): string {
+    const is_of_several = this.state.aircraft.length > 1 && isByFolder(logs.map(({ path }) => path));
+    return is_of_several ? `flightwatt-out/${names(folder)}` : "flightwatt-out";
+  }
+
   batchArguments(): string[] {
-    const maps = this.pathsOf(logs_folder).filter((path) => kindOf(path, new Set()) === "columns");
-    const columns = maps[0] ? ["--columns", maps[0]] : [];
-    return ["batch", ...this.logs(), "--each", "--prune", "-o", out_folder, "--json", ...columns];
+    return ["batch", ...this.logs(), "--each", "--prune", "-o", out_folder, "--json", ...this.columnsOption()];
   }
 
   private async readLogs() {
@@ -356,6 +374,7 @@ export class Project {
     return [
       "answer",
       ...aircraft.logs.map((line) => line.path),
+      ...this.columnsOption(),
       ...optionsOf(question),
       "-o",
       aircraft.folder,

@@ -70,8 +70,15 @@ export function quoted(text: string): string {
 
 const by_folder = 4;
 
-/// Returns logs as a command line has them: by name, or where they are many their folder.
-export function logsShown(logs: string[]): string {
-  if (logs.length > by_folder) return "LOGS";
-  return logs.map((log) => quoted(log.replace(/^logs\//, "").replace(/^-/, "./-"))).join(" ");
+/// Whether a command names the folder of logs, and so has to say which of several aircraft it is of.
+export const isByFolder = (logs: string[]) => logs.length > by_folder;
+
+/// Returns logs as a command line has them, by name or where they are many as their folder, of which `aircraft` is read;
+/// and the map of their columns.
+export function inputsShown(logs: string[], columns?: string, aircraft?: string): string {
+  const shown = (path: string) => quoted(path.replace(/^logs\//, "").replace(/^-/, "./-"));
+  return [
+    ...(isByFolder(logs) ? ["LOGS", ...(aircraft != null ? ["--aircraft", quoted(aircraft)] : [])] : logs.map(shown)),
+    ...(columns != null ? ["--columns", shown(columns)] : []),
+  ].join(" ");
 }
