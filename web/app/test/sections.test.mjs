@@ -154,6 +154,12 @@ test("a distance in wind is along it, and that across it is named so", () => {
   assert.match(words(show(app.Figures, { now: { answer: unknown, curve: null }, asking: false })), /as modelled *, out and back/);
 });
 
+test("what the program warns of an answer is in sight, what it warns of in a flight is folded", () => {
+  const page = words(show(app.Warnings, { texts: ["f1: the log ends in the air", "the capacity contradicts the flights"], flights: ["f1"] }));
+  assert.match(page, /^the capacity contradicts the flights 1 warning of a flight f1: the log/);
+  assert.equal(show(app.Warnings, { texts: [], flights: ["f1"] }), "");
+});
+
 test("a line has a gap where a value is missing", () => {
   const place = { x: (value) => value, y: (value) => value };
   assert.equal(app.lineOf(place, [0, 1, 2, 3], [5, null, 6, 7]), "M0.0 5.0M2.0 6.0L3.0 7.0");

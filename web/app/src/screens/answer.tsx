@@ -352,15 +352,17 @@ function headline({ answer, question }: Answered): string {
   return `${begin} full pack lasts ${duration(time.value)}${chance}`;
 }
 
-/// What the program warns of: the first, and the others folded.
-export function Warnings({ texts: [first, ...others] }: { texts: string[] }) {
-  if (first == null) return null;
+/// What the program warns of; what it warns of in a flight, which its line of the logs has too, is folded.
+export function Warnings({ texts, flights }: { texts: string[]; flights: string[] }) {
+  if (texts.length === 0) return null;
+  const isOfFlight = (text: string) => flights.some((flight) => text.startsWith(`${flight}: `));
+  const of_flights = texts.filter(isOfFlight);
   return (
     <Card class="warned">
-      <Verdict grade="doubt">{inPageWords(first)}</Verdict>
-      {others.length > 0 && (
-        <Folded title={others.length === 1 ? "1 warning more" : `${others.length} warnings more`}>
-          <ul class="rests">{others.map((text) => <li>{inPageWords(text)}</li>)}</ul>
+      {texts.filter((text) => !isOfFlight(text)).map((text) => <p><Verdict grade="doubt">{inPageWords(text)}</Verdict></p>)}
+      {of_flights.length > 0 && (
+        <Folded title={of_flights.length === 1 ? "1 warning of a flight" : `${of_flights.length} warnings of flights`}>
+          <ul class="rests">{of_flights.map((text) => <li>{inPageWords(text)}</li>)}</ul>
         </Folded>
       )}
     </Card>
@@ -393,7 +395,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
     return aircraft.failed ? (
       <>
         <h1>{aircraft.name}: no answer</h1>
-        <Card><Verdict grade="bad">{aircraft.failed}</Verdict></Card>
+        <Card><Verdict grade="bad">{inPageWords(aircraft.failed)}</Verdict></Card>
         {optionsOf(aircraft.question).length > 0 && (
           <button type="button" class="quiet" onClick={() => project.ask(aircraft.id, {})}>As measured</button>
         )}
@@ -417,8 +419,8 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
           <h1 class={is_old ? "old" : ""} aria-live="polite">{headline(now)}</h1>
         </div>
       </header>
-      {aircraft.failed && <Card class="failed"><Verdict grade="bad">{aircraft.failed}</Verdict></Card>}
-      <Warnings texts={now.warnings} />
+      {aircraft.failed && <Card class="failed"><Verdict grade="bad">{inPageWords(aircraft.failed)}</Verdict></Card>}
+      <Warnings texts={now.warnings} flights={aircraft.logs.map((line) => line.flight)} />
       <CapacityAsked aircraft={aircraft} project={project} />
       <div class="answer">
         <WhatIf project={project} aircraft={aircraft} asking={asking} />
