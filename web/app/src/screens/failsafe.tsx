@@ -1,6 +1,6 @@
 // The battery failsafe of an answer as parameters of autopilots, as `flightwatt export` writes them.
 import { useEffect, useState } from "preact/hooks";
-import { Card, CopyButton, Folded, save } from "../ui/basics";
+import { Card, CopyButton, Folded, NumberField, save } from "../ui/basics";
 import { chance, number, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
 import type { Failsafe } from "../work/documents";
@@ -138,22 +138,13 @@ export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafePr
   const [chosen, setChosen] = useState<Autopilot>(autopilots[0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
   const home_m = aircraft.question.home_m ?? card?.home_distance_m;
-  const setHome = (text: string) => {
-    const value = Number(text.replace(",", "."));
-    project.ask(aircraft.id, { ...aircraft.question, home_m: value > 0 ? value : undefined });
-  };
+  const setHome = (value: number | undefined) => project.ask(aircraft.id, { ...aircraft.question, home_m: value });
   return (
     <Card title="Failsafe">
       <label class="field">
         <span>Farthest from home</span>
         <span>
-          <input
-            type="text"
-            inputMode="decimal"
-            size={6}
-            value={home_m != null ? String(Math.round(home_m)) : ""}
-            onChange={(event) => setHome(event.currentTarget.value)}
-          /> m
+          <NumberField size={6} value={home_m != null ? Math.round(home_m) : undefined} onNumber={setHome} /> m
         </span>
       </label>
       {!card && <p>None: {inPageWords(failsafe_missing)}</p>}

@@ -1,5 +1,6 @@
 // The sliders: each changes one option of `flightwatt answer`.
 import { duration, distance, quantity } from "../ui/format";
+import { NumberField } from "../ui/basics";
 import { Slider } from "../ui/slider";
 import type { Aircraft, Answered, Project } from "../work/project";
 import { isMeasured } from "../work/project";
@@ -157,11 +158,7 @@ export function WhatIf({ project, aircraft, asking }: { project: Project; aircra
       {question.payload_kg != null && (
         <label class="mass">
           <span>Mass as it flew, without this payload</span>
-          <input type="text" inputMode="decimal" size={5} value={question.mass_kg ?? ""}
-            onChange={(event) => {
-              const kg = Number(event.currentTarget.value.replace(",", "."));
-              set("mass_kg", kg > 0 ? kg : undefined);
-            }} />
+          <NumberField size={5} value={question.mass_kg} onNumber={(kg) => set("mass_kg", kg)} />
           <span>kg</span>
         </label>
       )}

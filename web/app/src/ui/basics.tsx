@@ -122,6 +122,24 @@ export function Command({ line }: { line: string }) {
   );
 }
 
+/// A field for a number above 0, which is taken once it is left or by Enter; until then nothing else changes what is typed.
+export function NumberField({ value, size, onNumber }: {
+  value: number | undefined;
+  size: number;
+  onNumber: (value: number | undefined) => void;
+}) {
+  const [typed, setTyped] = useState<string | null>(null);
+  return (
+    <input type="text" inputMode="decimal" size={size} value={typed ?? value ?? ""}
+      onInput={(event) => setTyped(event.currentTarget.value)}
+      onChange={(event) => {
+        setTyped(null);
+        const number = Number(event.currentTarget.value.replace(",", "."));
+        onNumber(number > 0 ? number : undefined);
+      }} />
+  );
+}
+
 /// Offers bytes as a file to save.
 export function save(name: string, data: BlobPart, type = "application/octet-stream") {
   const link = document.createElement("a");
