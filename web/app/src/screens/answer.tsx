@@ -289,12 +289,12 @@ function PredictedCard({ project, aircraft, answered }: { project: Project; airc
       ) : (
         <p>Unknown: {error.unknown}</p>
       )}
-      {rows.length > 1 && (
+      {error.value != null && rows.length > 1 && (
         <table class="left-out">
           <thead>
             <tr>
               <th scope="col">Flight</th>
-              <th scope="col">Used</th>
+              <th scope="col">Used in the phases predicted</th>
               <th scope="col">Predicted</th>
               <th scope="col">Off</th>
             </tr>
@@ -311,7 +311,7 @@ function PredictedCard({ project, aircraft, answered }: { project: Project; airc
           </tbody>
         </table>
       )}
-      {rows.length > 6 && <p class="soft">and {rows.length - 6} more</p>}
+      {error.value != null && rows.length > 6 && <p class="soft">and {rows.length - 6} more</p>}
     </Card>
   );
 }
