@@ -25,6 +25,9 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
+/// The source of a track of a CSV without front matter.
+inline constexpr auto plain_source = "series CSV";
+
 /// How several values at the same time become one.
 enum class Merge {
     mean,   ///< their mean: for measurements

@@ -11,7 +11,6 @@
 #include "flight/select/supply.h"
 #include "flight/select/throttle.h"
 #include "flight/select/voltage_dropouts.h"
-#include "flight/series_file.h"
 
 #include <algorithm>
 #include <iterator>

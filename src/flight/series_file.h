@@ -11,9 +11,6 @@
 
 namespace flightwatt::flight {
 
-/// The source of a track of a CSV without front matter.
-inline constexpr auto plain_source = "series CSV";
-
 /// Reads a table's key current_origin. Throws InputError for another text.
 CurrentOrigin read_current_origin(const TomlTable& table);
 
