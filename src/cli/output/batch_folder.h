@@ -77,7 +77,7 @@ std::optional<FittedBatch> fit_folder(const StageCall& call, const BatchArgument
 /// Removes the model of an earlier run, with a note: without a fit it would be taken for this one's.
 void remove_model(const StageCall& call, const std::filesystem::path& out);
 
-/// Removes, with --prune, the folders of `--each` in OUT that are of none of these aircraft; else warns of them.
+/// Removes, with --prune, the folders of `--each` in OUT whose aircraft is not among these; else warns of them.
 void settle_folders_of_each(const StageCall& call, const std::filesystem::path& out,
                             const std::vector<batch::AircraftGroup>& aircraft, bool prune);
 
