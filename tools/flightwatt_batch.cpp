@@ -163,6 +163,7 @@ int finish_each(const cli::StageCall& call, const cli::BatchArguments& arguments
     settle_folders_of_each(call, options.out, aircraft, arguments.prune);
     if (flown.groups.empty()) throw InputError({}, "no flight can be fitted", "see the reasons above");
     std::vector<cli::AircraftFolder> made;
+    made.reserve(aircraft.size());
     for (const auto& group : aircraft) made.push_back(finish_one(call, arguments, group, flown, options, published));
     if (call.json) cli::print_json(call, BatchOutput{nullptr, &made, &flights});
     const auto code = exit_code(call, totals_of(flights));
