@@ -12,7 +12,6 @@
 #include "path/plan_blocks.h"
 #include "path/plan_fence.h"
 #include "path/plan_files.h"
-#include "path/plan_writer.h"
 #include "path/trajectory.h"
 #include "path/waypoint_files.h"
 
@@ -422,29 +421,6 @@ path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
         throw InputError(path.where("turn_radius_m"), "a rotorcraft brakes before corners: it has no turn_radius_m",
                          "leave it out");
     return limits;
-}
-
-/// Takes altitudes of which it is not known how high they are above home as a written plan states them: as those above
-/// home, or of a home at sea level.
-void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::PathDefaults& defaults,
-                             MissionSetup& mission) {
-    const bool has_altitude =
-        defaults.altitude_m || std::ranges::any_of(entries, [](const auto& entry) { return !!entry.altitude_m; });
-    if (!has_altitude) {
-        defaults.altitude_m = defaults.ground_m + path::default_altitude_m;
-        defaults.is_above_sea = false;
-        mission.notes.push_back(
-            fmt::format("path: no altitude is stated: {} m above the ground", path::default_altitude_m));
-    } else if (defaults.is_above_sea) {
-        mission.notes.emplace_back(
-            "path: its altitudes are above the sea, and the height of home is not stated: the files of the packs have them "
-            "above the sea, and climbs and descents are counted from 0 m: state altitudes above home");
-    } else if (!defaults.is_above_ground) {
-        mission.notes.emplace_back(
-            "path: what its altitudes are above is not stated: the files of the packs have them above home, and climbs "
-            "and descents are counted from there: check them");
-    }
-    defaults.is_above_ground = true;
 }
 
 /// The path as it is drawn, and where it is.

@@ -1,6 +1,7 @@
 #include "mission/file/takeoff_height.h"
 
 #include "base/units.h"
+#include "path/plan_writer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,27 @@ void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& missi
     mission.uncertain.push_back(
         fmt::format("{}: take-off and landing are those of the model's flights, of up to {:.0f} m", finding,
                     flown.heights->high_m));
+}
+
+void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::PathDefaults& defaults,
+                             MissionSetup& mission) {
+    const bool has_altitude =
+        defaults.altitude_m || std::ranges::any_of(entries, [](const auto& entry) { return !!entry.altitude_m; });
+    if (!has_altitude) {
+        defaults.altitude_m = defaults.ground_m + path::default_altitude_m;
+        defaults.is_above_sea = false;
+        mission.notes.push_back(
+            fmt::format("path: no altitude is stated: {} m above the ground", path::default_altitude_m));
+    } else if (defaults.is_above_sea) {
+        mission.notes.emplace_back(
+            "path: its altitudes are above the sea, and the height of home is not stated: the files of the packs have them "
+            "above the sea, and climbs and descents are counted from 0 m: state altitudes above home");
+    } else if (!defaults.is_above_ground) {
+        mission.notes.emplace_back(
+            "path: what its altitudes are above is not stated: the files of the packs have them above home, and climbs "
+            "and descents are counted from there: check them");
+    }
+    defaults.is_above_ground = true;
 }
 
 TakeoffAndLanding takeoff_and_landing(const MissionSetup& mission) {

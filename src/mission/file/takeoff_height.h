@@ -18,6 +18,11 @@ void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rat
 /// home, where the path begins higher than the model's flights climbed.
 void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission);
 
+/// Takes altitudes of which it is not known how high they are above home as a written plan states them: as those above
+/// home, or of a home at sea level; 50 m where none is stated. Notes it.
+void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::PathDefaults& defaults,
+                             MissionSetup& mission);
+
 /// How long take-off and landing last.
 struct TakeoffAndLanding {
     PerPhase<double> duration_s;
