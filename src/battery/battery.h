@@ -14,6 +14,10 @@ namespace flightwatt::battery {
 inline constexpr double max_capacity_ah = 200.0;  ///< of a pack; a number above is one in mAh
 inline constexpr auto capacity_hint = "the unit is Ah: 5000 mAh is 5 Ah";
 
+/// The limits of an RC pair's time constant: a faster pair is part of the series resistance.
+inline constexpr double min_time_constant_s = 0.1;
+inline constexpr double max_time_constant_s = 1e5;
+
 /// Open-circuit voltage over state of charge: straight lines between knots.
 struct OpenCircuitVoltage {
     std::vector<double> soc_percent;  ///< from 0 to 100, rising strictly

@@ -16,8 +16,6 @@
 namespace flightwatt::battery {
 namespace {
 
-constexpr double min_time_constant_s = 0.1;
-constexpr double max_time_constant_s = 1e5;
 constexpr double max_number = 1e6;  // squared and divided, values below stay numbers
 constexpr int max_cells = 100;
 constexpr int max_monitors = 100;

@@ -243,7 +243,8 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
     battery.resistance_ohm = fit.resistance_ohm;
     battery.capacity_ah = result.capacity.value_ah;
     battery.cells = result.cells;
-    battery.thevenin = TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(0.1, fit.rc_time_constant_s)};
+    battery.thevenin =
+        TheveninCircuit{extended.curve, fit.rc_resistance_ohm, std::max(min_time_constant_s, fit.rc_time_constant_s)};
     battery.intervals.capacity_ah = result.capacity.interval_ah;
     battery.intervals.open_circuit_standard_error_v = extended.standard_error_v;
     if (fit.rc_resistance_ohm > 0.0) {

@@ -150,7 +150,10 @@ void move_battery(const battery::BatteryIntervals& intervals, std::span<const do
     if (!battery.thevenin) return;
     auto& circuit = *battery.thevenin;
     circuit.rc_resistance_ohm = moved(circuit.rc_resistance_ohm, intervals.rc_resistance_ohm, z[3], 0.0);
-    circuit.rc_time_constant_s = moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, z[4]);
+    // An unknown time constant is drawn over many decades: steps of a discharge are shorter than it.
+    circuit.rc_time_constant_s =
+        std::clamp(moved_logarithm(circuit.rc_time_constant_s, intervals.rc_time_constant_s, z[4]),
+                   battery::min_time_constant_s, battery::max_time_constant_s);
     auto& voltage_v = circuit.open_circuit.voltage_v;
     const double min_v = min_part * voltage_v.front();
     // Knots near an empty pack are least certain: the curve never falls, so the ones above limit them.

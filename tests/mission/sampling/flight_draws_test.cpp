@@ -8,7 +8,9 @@
 #include "mission/sampling/flight_spreads.h"
 #include "mission/simulation/load_segments.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <random>
@@ -258,6 +260,27 @@ TEST(FlightDraws, DrawTheResistanceOfFilesOfBeforeByItsInterval) {
     EXPECT_NE(
         describe(collect_uncertainty(mission.setup).sources).find("of 4 flights, Student t with 4 degrees of freedom"),
         std::string::npos);
+}
+
+TEST(FlightDraws, KeepAnUnknownTimeConstantLongEnoughToBeStepped) {
+    auto mission = test::steady_mission();
+    battery::TheveninCircuit circuit;
+    circuit.open_circuit = {{0.0, 100.0}, {9.0, 12.6}};
+    circuit.rc_resistance_ohm = 0.01;
+    circuit.rc_time_constant_s = 110.0;
+    mission.setup.battery.thevenin = circuit;
+    mission.setup.battery.intervals.rc_time_constant_s = Interval{0.005, 2.4e6};
+    double shortest_s = std::numeric_limits<double>::infinity();
+    double longest_s = 0.0;
+    for (std::uint64_t i = 0; i < 500; ++i) {
+        const auto normals = draw_normals(count_normals(mission.setup), 1, i);
+        const double drawn_s =
+            apply_draw(mission.setup, collect_uncertainty(mission.setup), normals).battery.thevenin->rc_time_constant_s;
+        shortest_s = std::min(shortest_s, drawn_s);
+        longest_s = std::max(longest_s, drawn_s);
+    }
+    EXPECT_EQ(shortest_s, battery::min_time_constant_s) << "less took minutes to simulate";
+    EXPECT_EQ(longest_s, battery::max_time_constant_s);
 }
 
 TEST(FlightDraws, LeaveAloneWhatTheMissionStates) {
