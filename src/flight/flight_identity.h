@@ -21,14 +21,14 @@ std::optional<double> start_clock_s(const std::optional<double>& logged_s, const
 
 /// Summary of a flight's samples, which identifies it.
 struct FlightContent {
-    std::uint64_t fingerprint = 0;  ///< of all values of altitude, voltage, current and power; 0: all are constant
+    std::uint64_t fingerprint = 0;  ///< of altitude, voltage, current and power; 0: all are constant
     bool has_definitions = true;    ///< the log has a .log
 
     bool operator==(const FlightContent&) const = default;
 };
 
-/// Summarizes a series. Files with the same samples have equal fingerprints: under any name, compressed, as text or
-/// binary, as a log or a series CSV. Times are not included.
+/// Summarizes a series. Files with the same samples have equal fingerprints, but for rare exceptions also where they were
+/// rounded: under any name, compressed, as text or binary, as a log or a series CSV. Times are not included.
 FlightContent content_of(const FlightSeries& series);
 
 /// The name of a synthetic aircraft without a .log.
