@@ -26,6 +26,10 @@ namespace {
 constexpr double min_power_fraction = 0.02;  // of the largest power; less is a spare input
 // Packs of as many cells are at most as far apart: 4.2 V a cell when full, 3.15 V when empty.
 constexpr double max_voltage_difference = 0.25;
+// By the highest voltages of packs: more than 4.45 V is no full cell, less than 3.3 V is none at rest before a flight.
+constexpr double full_cell_v = 4.45;
+constexpr double empty_cell_v = 3.3;
+constexpr double exceeded_by = 0.01;  // of the samples
 // Two sensors of one pack. Equal packs in parallel share the current less evenly, by their resistances.
 constexpr double same_voltage = 0.02;
 constexpr double same_current = 0.03;
@@ -46,6 +50,7 @@ struct Monitor {
     Track battery_temperature_c;
     double mean_w = 0.0;
     double mean_v = 0.0;
+    double high_v = 0.0;  ///< exceeded by a hundredth of the samples
     double mean_a = 0.0;
     std::optional<double> stated_capacity_ah = {};  ///< see FlightInfo::monitor_capacities_ah
     std::optional<int> stated_cells = {};           ///< see FlightInfo::monitor_cells
@@ -100,6 +105,7 @@ std::vector<Monitor> monitors_of(const FlightSeries& series) {
         if (capacity != series.monitor_capacities_ah.end()) monitor.stated_capacity_ah = capacity->second;
         monitor.stated_cells = stated_cells(series, id);
         monitor.mean_v = mean(monitor.voltage_v.value);
+        monitor.high_v = quantile_of(monitor.voltage_v.value, 1.0 - exceeded_by);
         if (monitor.has_current()) {
             monitor.mean_w = mean(monitor.power_w.value);
             monitor.mean_a = mean(monitor.current_a.value);
@@ -194,7 +200,15 @@ void exclude(std::vector<Monitor>& monitors) {
     }
 }
 
-/// The packs that count, by circuit: a pack belongs to the first circuit whose largest pack has about its voltage.
+/// Whether two packs have different numbers of cells in series: 12.5 V are 3 and 16.8 V 4 or 5.
+bool have_other_cells(const Monitor& pack, const Monitor& other) {
+    const auto& [low, high] = std::minmax(pack.high_v, other.high_v);
+    const double most_of_low = std::max(std::ceil(low / full_cell_v), std::floor(low / empty_cell_v));
+    return most_of_low < std::ceil(high / full_cell_v);
+}
+
+/// The packs that count, by circuit: a pack belongs to the first circuit whose largest pack has about its voltage, and
+/// may have as many cells.
 std::vector<std::vector<const Monitor*>> packs_by_circuit(const std::vector<Monitor>& monitors) {
     std::vector<const Monitor*> packs;
     for (const auto& monitor : monitors)
@@ -203,7 +217,9 @@ std::vector<std::vector<const Monitor*>> packs_by_circuit(const std::vector<Moni
     std::vector<std::vector<const Monitor*>> circuits;
     for (const auto* pack : packs) {
         const auto circuit = std::ranges::find_if(circuits, [&](const auto& of) {
-            return std::abs(pack->mean_v - of.front()->mean_v) <= max_voltage_difference * of.front()->mean_v;
+            const auto& largest = *of.front();
+            return std::abs(pack->mean_v - largest.mean_v) <= max_voltage_difference * largest.mean_v &&
+                   !have_other_cells(*pack, largest);
         });
         if (circuit == circuits.end())
             circuits.push_back({pack});

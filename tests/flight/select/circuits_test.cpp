@@ -86,6 +86,22 @@ TEST(Circuits, OfDifferentVoltagesAddTheirPowerButNotTheirCurrent) {
     EXPECT_THROW(select_circuit(data, 3), InputError);
 }
 
+TEST(Circuits, OfOtherNumbersOfCellsAreApartThoughOneSagsToTheVoltageOfTheOther) {
+    auto series = series_of({{"BAT", "0", 15.5, times(1.0)}, {"BAT", "1", 12.4, times(0.1)}});
+    auto& of_motors = series.tracks.front();
+    ASSERT_EQ(of_motors.name, "voltage_v");
+    for (std::size_t i = 0; i < 10; ++i) of_motors.value[i] = 16.8;
+    series.monitor_capacities_ah = {{"0", 5.0}, {"1", 2.2}};
+    const auto data = select_tracks(series);
+    ASSERT_EQ(data.circuits.size(), 2U);
+    EXPECT_EQ(data.circuits[0].name, "BAT 0");
+    EXPECT_EQ(data.stated_capacity_ah, 5.0) << "the pack of the electronics does not feed the motors";
+    const auto low = select_tracks(series_of({{"BAT", "0", 6.4, times(1.0)}, {"BAT", "1", 6.5, times(0.6)}}));
+    EXPECT_EQ(low.circuits.size(), 1U) << "nearly empty";
+    const auto unlike = select_tracks(series_of({{"BAT", "0", 16.6, times(1.0)}, {"BAT", "1", 14.0, times(0.6)}}));
+    EXPECT_EQ(unlike.circuits.size(), 1U) << "one of two of 4 cells is nearly empty";
+}
+
 TEST(Circuits, LeaveOutAMonitorThatIsTheSumOfTwoOthers) {
     const std::vector<Logged> logged{
         {"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(0.6)}, {"BAT", "2", 16.0, times(0.4)}};
