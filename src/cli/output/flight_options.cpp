@@ -107,6 +107,15 @@ std::vector<UsedFlights> by_aircraft(const StageCall& call, const FlightArgument
     return each;
 }
 
+/// Throws UsageError: two flights have one name, which is that of their files.
+[[noreturn]] void refuse_equal_names(const std::string& flight, const std::string& file, const std::string& other) {
+    if (file == other) throw UsageError(fmt::format("flight '{}' is given twice", flight));
+    throw UsageError(
+        fmt::format("flight '{}' is given twice, by {} and {}: if both flew, 'flightwatt batch' of the "
+                    "logs takes equal names apart; give its folder instead",
+                    flight, other, file));
+}
+
 /// Reason to exclude a flight; empty for one that is used.
 std::string why_left_out(const FlightFilter& filter, const std::string& flight) {
     if (!filter.since && !filter.until) return "";
@@ -321,6 +330,7 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
     const auto inputs = files_of(call, options);
     options.aircraft_required = inputs.size() == 1;
     std::vector<std::string> flights;
+    std::map<std::string, std::string> file_of;  // by flight
     std::vector<ReadFlight> known;
     std::optional<flight::OtherAircraftError> other;
     std::optional<InputError> unusable;
@@ -349,9 +359,8 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
         }
         for (auto& loaded : of_file.flights) {
             const auto name = loaded.series.flight;
-            if (std::ranges::find(flights, name) != flights.end()) {
-                throw UsageError(fmt::format("flight '{}' is given twice", name));
-            }
+            const auto [first, is_new] = file_of.emplace(name, file);
+            if (!is_new) refuse_equal_names(name, file, first->second);
             flights.push_back(name);
             add_diagnostics(call, file, loaded);
             known.push_back({batch::aircraft_of(loaded), content_of(loaded.series), loaded.exclusion.empty()});

@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "helpers/cut_logs.h"
 #include "helpers/running_program.h"
+#include "helpers/sample_logs.h"
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
@@ -276,6 +277,12 @@ TEST_F(FlightOptions, AreGivenOnceAndRefuseAFlightThatIsGivenTwice) {
         EXPECT_EQ(twice.code, usage_error) << stage;
         EXPECT_THAT(twice.err, HasSubstr("flight 'opterra_synthetic_01' is given twice"));
     }
+    // Autopilots number their logs: those of two cards have the same names.
+    for (const int number : {1, 2}) test::copy_sample(number, folder_ / fmt::format("card{}", number), "00000001");
+    const auto apart = run("fit --name x card1 card2");
+    EXPECT_EQ(apart.code, usage_error);
+    EXPECT_THAT(apart.err, HasSubstr("flight '00000001' is given twice, by card1"));
+    EXPECT_THAT(apart.err, HasSubstr("'flightwatt batch' of the logs takes equal names apart"));
 }
 
 }  // namespace
