@@ -179,6 +179,10 @@ FittedPhase fit_phase_model(flight::Phase phase, std::span<const PhaseSamples> f
 }
 
 ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions& options) {
+    if (flights.empty())
+        throw NoResultError(
+            "no flight is left to fit: the messages state why each is left out; those with power faults are used by "
+            "--keep NAME, else add a log of a whole flight, from take-off to landing");
     const auto names = names_of(flights);
     ModelFit parts;
     auto& model = parts.model;
