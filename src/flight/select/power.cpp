@@ -184,7 +184,12 @@ Track dropout_throttle(const FlightSeries& series, const Track& candidate) {
 ChosenTrack select_power(const FlightSeries& series) {
     if (const auto* plain = find_plain(series, "power_w")) {
         // Accepted even if it is 0 throughout.
-        return remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
+        auto power =
+            remove_outliers(*plain, contradicted_times(series, plain->source), dropout_throttle(series, *plain));
+        if (plain->empty() && plain->source.find(" * ") != std::string::npos)
+            power.not_chosen.push_back(
+                fmt::format("no row has both factors of {}: write them into the same rows", plain->source));
+        return power;
     }
     ChosenTrack power;
     const auto* product = find_product(series, "ENERGY.");

@@ -76,6 +76,13 @@ TEST(MappedCsv, TakesTheUnitThatTheNameStates) {
     EXPECT_EQ(refusal("t,h,h\n0,1,1\n1,1,1\n", altitude), "f.csv:1: has several columns 'h'; keep one of them");
 }
 
+TEST(MappedCsv, SaysWhyThereIsNoPowerWhereVoltageAndCurrentAreInDifferentRows) {
+    const auto series = read("t,u,i\n0,15,\n1,,20\n2,15,\n3,,20\n", electric);
+    EXPECT_EQ(no_power_reason(select_tracks(series)),
+              "no row has both factors of u * i: write them into the same rows");
+    EXPECT_EQ(no_power_reason(select_tracks(read("t,u,i\n0,15,20\n1,15,20\n", electric))), "");
+}
+
 TEST(MappedCsv, TakesTheFirstOfSeveralColumns) {
     const std::string tracks = "[[track]]\nname = \"altitude_m\"\ncolumns = [\"a\", \"b\"]\n";
     EXPECT_EQ(read("t,b,a\n0,1,2\n1,1,2\n", tracks).tracks.at(0).source, "a");
