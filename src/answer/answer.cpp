@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,6 +60,24 @@ std::string resistance_basis(const PackAnswer& pack) {
                        pack.resistance_at_ohm.basis);
 }
 
+/// What the flights' mean ground speed is, which none of them may have flown.
+std::string ground_speed_basis(const std::vector<FlightFacts>& flights) {
+    constexpr double max_ratio = 2.0;
+    constexpr double max_difference_m_per_s = 3.0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = 0.0;
+    for (const auto& flight : flights) {
+        low = std::min(low, flight.ground_speed_m_per_s.value_or(low));
+        high = std::max(high, flight.ground_speed_m_per_s.value_or(high));
+    }
+    if (high <= max_ratio * low || high - low <= max_difference_m_per_s)
+        return "assumed: the ground speed of the flights, as in calm air";
+    return fmt::format(
+        "assumed: the mean ground speed of flights at {:.1f} to {:.1f} m/s, as in calm air; --airspeed "
+        "asks for one speed",
+        low, high);
+}
+
 /// The airspeed of the cruise [m/s]: as asked, or as flown.
 Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question) {
     if (const auto asked = mission_airspeed_m_per_s(aircraft, question)) return known(*asked, "as asked");
@@ -68,7 +87,7 @@ Answered cruise_airspeed(const KnownAircraft& aircraft, const Question& question
                                                           ? "estimated of the cruise, from the ground velocity"
                                                           : "measured in cruise");
     if (const auto ground = mean_ground_speed_m_per_s(aircraft.flights))
-        return known(*ground, "assumed: the ground speed of the flights, as in calm air");
+        return known(*ground, ground_speed_basis(aircraft.flights));
     return unknown("the logs have neither airspeed nor position; a flight with GPS shows it");
 }
 

@@ -100,6 +100,15 @@ TEST_F(AnswerTest, NoWayBackAgainstAWindAsFastAsTheAircraft) {
     EXPECT_THAT(endurance.distance_m.unknown, HasSubstr("makes no way against a wind of 12.0 m/s"));
 }
 
+TEST_F(AnswerTest, ASpeedThatNoFlightFlewIsCalledAMean) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    EXPECT_EQ(answer_endurance(aircraft, {}).airspeed_m_per_s.basis,
+              "assumed: the ground speed of the flights, as in calm air");
+    aircraft.flights = {{"hover", 60.0, 0.2, 5.0}, {"away", 60.0, 12.0, 500.0}};
+    EXPECT_THAT(answer_endurance(aircraft, {}).airspeed_m_per_s.basis,
+                HasSubstr("the mean ground speed of flights at 0.2 to 12.0 m/s"));
+}
+
 TEST_F(AnswerTest, NoDistanceOfAHover) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.model.is_rotorcraft = true;
