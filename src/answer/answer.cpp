@@ -194,7 +194,7 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     Endurance endurance;
     const auto speed = mean_ground_speed_m_per_s(aircraft.flights);
     endurance.is_hover = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s &&
-                         (question.wind_m_per_s > 0.0 || speed.value_or(0.0) < max_hover_m_per_s);
+                         (question.wind_m_per_s > 0.0 || (speed && *speed < max_hover_m_per_s));
     const auto basis = power_basis(aircraft, question);
     const auto with_cruise_s = variation_of(aircraft, question);
     const auto setup = setup_of_question(with_cruise_s, aircraft, endurance);

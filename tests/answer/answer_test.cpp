@@ -118,6 +118,10 @@ TEST_F(AnswerTest, NoDistanceOfAHover) {
     aircraft.flights.front().ground_speed_m_per_s = 3.1;
     EXPECT_FALSE(answer_endurance(aircraft, {}).is_hover);
     EXPECT_TRUE(answer_endurance(aircraft, {}).distance_m.value);
+    aircraft.flights.front().ground_speed_m_per_s.reset();
+    EXPECT_FALSE(answer_endurance(aircraft, {}).is_hover) << "without a speed it may have flown away";
+    EXPECT_EQ(answer_endurance(aircraft, {}).distance_m.unknown,
+              "the logs have neither airspeed nor position; a flight with GPS shows it");
 }
 
 TEST_F(AnswerTest, ARotorcraftReturnsAgainstTheWindAtTheGroundSpeedItFlew) {
