@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "mechanical/table_one.h"
 #include "mission/feasibility_limits.h"
 #include "mission/mission_file.h"
@@ -124,6 +125,19 @@ Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s
     return known(cruise_s * (speed * speed - wind_m_per_s * wind_m_per_s) / speed, airspeed.basis);
 }
 
+/// That other packs gave a part of the power; empty where none did.
+std::string other_packs_note(const std::vector<FlightFacts>& flights) {
+    double least_percent = units::percent_per_whole;
+    for (const auto& flight : flights)
+        least_percent = std::min(least_percent, flight.pack_percent.value_or(least_percent));
+    constexpr double nearly_all_percent = 98.0;
+    if (least_percent >= nearly_all_percent) return "";
+    return fmt::format(
+        "the pack is taken to give all of the power, of which packs of other circuits gave {:.0f} % in "
+        "the flights: it lasts longer if theirs do",
+        units::percent_per_whole - least_percent);
+}
+
 /// The mission of the question with a given duration of its cruise.
 mission::MissionVariation variation_of(const KnownAircraft& aircraft, const Question& question) {
     const auto mission_of =
@@ -210,6 +224,7 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
         endurance.notes.push_back(
             fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
                         *aircraft.pack.asked_temperature_c));
+    if (auto note = other_packs_note(aircraft.flights); !note.empty()) endurance.notes.push_back(std::move(note));
     const auto no_95 = no_variability(aircraft);
     endurance.time_s = missing.empty() ? longest(with_cruise_s, other_s, std::nullopt, time_basis) : unknown(missing);
     endurance.time_95_s = !endurance.time_s.value ? unknown(endurance.time_s.unknown)

@@ -1,6 +1,7 @@
 #include "answer/flight_facts.h"
 
 #include "base/units.h"
+#include "flight/phase_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,8 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
     std::vector<FlightFacts> facts;
     const auto& data = loaded.data;
     const auto places = places_of(data);
+    std::optional<double> pack_percent;
+    if (data.circuits.size() > 1) pack_percent = circuit_shares(data, loaded.phases).front().percent;
     for (const auto& sortie : loaded.phases.sorties) {
         if (sortie.phases.empty()) continue;
         const auto farthest = farthest_m(places, sortie.phases.front().start.time_s, sortie.phases.back().end.time_s);
@@ -74,7 +77,7 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
             const double end_s = span.end.time_s;
             facts.push_back({data.flight, end_s - start_s, mean_between(data.ground_speed_m_per_s, start_s, end_s),
                              farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s),
-                             data.monitors});
+                             data.monitors, pack_percent});
         }
     }
     return facts;

@@ -18,6 +18,7 @@ struct FlightFacts {
     std::optional<double> stated_capacity_ah = {};    ///< of the pack, by the log's parameters
     std::optional<double> mean_voltage_v = {};        ///< of the cruise
     std::vector<flight::MonitorShare> monitors = {};  ///< see FlightData
+    std::optional<double> pack_percent = {};          ///< of the energy, by the pack; absent with a single circuit
 };
 
 /// Returns the facts of each cruise of a log.

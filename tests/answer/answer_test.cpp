@@ -109,6 +109,14 @@ TEST_F(AnswerTest, ASpeedThatNoFlightFlewIsCalledAMean) {
                 HasSubstr("the mean ground speed of flights at 0.2 to 12.0 m/s"));
 }
 
+TEST_F(AnswerTest, PowerOfOtherPacksIsNamed) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Not(testing::Contains(HasSubstr("other circuits"))));
+    aircraft.flights.front().pack_percent = 75.0;
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes,
+                testing::Contains(HasSubstr("of which packs of other circuits gave 25 % in the flights")));
+}
+
 TEST_F(AnswerTest, NoDistanceOfAHover) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.model.is_rotorcraft = true;
