@@ -2,6 +2,7 @@
 
 #include "path/path_entries.h"
 #include "path/plan_fence.h"
+#include "path/turns.h"
 
 #include <filesystem>
 #include <optional>
@@ -18,6 +19,8 @@ struct AutopilotSettings {
     bool is_rotorcraft = false;          ///< of plans that name no kind of vehicle
     bool one_airspeed = false;           ///< the plan's changes of the airspeed are not flown
     std::filesystem::path terrain = {};  ///< folder of tiles, for altitudes above the terrain; empty: none
+    Wind wind = {};                      ///< in which circles that end after a time are flown
+    TurnLimits turns = {};               ///< how narrow such circles are
 };
 
 /// The airspeed that a plan states for all legs without one of their own.

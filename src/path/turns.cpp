@@ -402,6 +402,21 @@ double turn_radius_m(double airspeed_m_per_s, double bank_deg, double wind_m_per
     return speed * speed / (units::standard_gravity_m_per_s2 * tangent_of(bank_deg));
 }
 
+double circle_time_s(double radius_m, double airspeed_m_per_s, const Wind& wind, const TurnLimits& limits) {
+    const double bank_tangent = tangent_of(limits.max_bank_deg);
+    PathElement circle;
+    circle.airspeed_m_per_s = airspeed_m_per_s;
+    if (limits.is_rotorcraft) {
+        circle.keeps_ground_speed = true;
+        circle.airspeed_m_per_s =
+            std::min(airspeed_m_per_s, std::sqrt(units::standard_gravity_m_per_s2 * radius_m * bank_tangent));
+    } else {
+        radius_m = std::max(radius_m, turn_radius_m(airspeed_m_per_s, limits.max_bank_deg, wind.speed_m_per_s));
+    }
+    circle.shape = Circles{radius_m, 1.0};
+    return compute_trajectory({{circle}}, wind, InfeasibleLegPolicy::crawl).duration_s;
+}
+
 TurnedPath fly_turns(const FlightPath& drawn, const Wind& wind, const TurnLimits& limits) {
     auto numbered = drawn;
     for (std::size_t i = 0; i < drawn.elements.size(); ++i) numbered.elements[i].drawn = i;

@@ -249,9 +249,9 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
     if (plan.entries.empty()) throw InputError({file}, "has no waypoints", hint);
     if (modes.size() > 1)
         throw InputError({file}, "has altitudes above the sea and above the ground", "give one altitudeMode");
-    const auto report = [&](const char* text, bool is_missing) {
-        plan.not_flown.emplace_back(text);
-        if (is_missing) plan.missing.emplace_back(text);
+    const auto report = [&](const char* remark, bool is_missing) {
+        plan.not_flown.emplace_back(remark);
+        if (is_missing) plan.missing.emplace_back(remark);
     };
     plan.is_above_home = modes.contains("relativeToGround");
     plan.is_above_sea = modes.contains("absolute");

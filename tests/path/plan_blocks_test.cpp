@@ -49,6 +49,23 @@ TEST(PlanBlocks, FlyRoutesAndPaths) {
     EXPECT_EQ(entries[3].altitude_m, std::optional(225.0));
 }
 
+/// Rounds for a time were counted by the airspeed, whatever the wind.
+TEST(PlanBlocks, FlyRoundsForATimeInTheWind) {
+    AutopilotSettings settings{60.0, 12.0};
+    settings.wind = {6.0, 180.0};
+    const auto circles_of = [&](const char* stage) { return read(stage, settings).entries.front().circles.value(); };
+    const double circle_s = circle_time_s(60.0, 12.0, settings.wind, {});
+    EXPECT_GT(circle_s, 1.15 * 2.0 * pi * 60.0 / 12.0);
+    EXPECT_NEAR(circles_of(R"(<circle wp="1" radius="nav_radius" until="stage_time>300"/>)") * circle_s, 300.0, 1e-6);
+    const double oval_s = circle_s + 300.0 / 18.0 + 300.0 / 6.0;  // its lines along the wind
+    const auto legs = [&](double time_s) {
+        return read(fmt::format(R"(<oval p1="1" p2="2" radius="60" until="stage_time>{}"/>)", time_s), settings)
+            .entries.size();
+    };
+    EXPECT_EQ(legs(2.9 * oval_s), legs(2.1 * oval_s));
+    EXPECT_LT(legs(1.9 * oval_s), legs(2.1 * oval_s));
+}
+
 TEST(PlanBlocks, NameTheMovementsThatAreMissing) {
     const auto missing_of = [](const char* stages) { return read(std::string(R"(<go wp="1"/>)") + stages).missing; };
     EXPECT_EQ(missing_of(R"(<circle wp="1" radius="80"/>)").size(), 1U) << "without an end";

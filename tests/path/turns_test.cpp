@@ -173,6 +173,13 @@ TEST(Turns, SlowARotorcraftOnNarrowCircles) {
     EXPECT_THAT(turned.notes, ElementsAre(HasSubstr("circles of 5 m are flown at 7 m/s")));
 }
 
+TEST(Turns, CircleAsFastAsTheBankPermits) {
+    const TurnLimits rotorcraft{true};
+    EXPECT_NEAR(circle_time_s(100.0, 5.0, {}, rotorcraft), 2.0 * pi * 100.0 / 5.0, 1e-6);
+    EXPECT_NEAR(circle_time_s(2.0, 5.0, {3.0, 90.0}, rotorcraft), 2.0 * pi * 2.0 / std::sqrt(9.80665 * 2.0), 1e-6);
+    EXPECT_NEAR(circle_time_s(5.0, airspeed, {}, {}), 2.0 * pi * radius_m / airspeed, 1e-6) << "of a wing: wider";
+}
+
 TEST(Turns, OfARotorcraftThatKeepsItsGroundSpeedAreThoseOfCalmAir) {
     FlightPath drawn{{element_of(Leg{90.0, 0.0}), element_of(Leg{60.0, 120.0}), element_of(Circles{5.0, 2.0})}};
     for (auto& element : drawn.elements) element.keeps_ground_speed = true;

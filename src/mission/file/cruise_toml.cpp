@@ -281,13 +281,27 @@ void require_one_file(const TomlTable& path) {
             throw InputError(path.where(key), fmt::format("{} belongs to {}", key, file), "add it, or leave this out");
 }
 
+path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
+    path::TurnLimits limits{is_rotorcraft};
+    limits.max_bank_deg = number_in_or(between(5.0, 80.0), path, "max_bank_deg", limits.max_bank_deg);
+    limits.radius_m = optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "turn_radius_m");
+    if (limits.radius_m && is_rotorcraft)
+        throw InputError(path.where("turn_radius_m"), "a rotorcraft brakes before corners: it has no turn_radius_m",
+                         "leave it out");
+    return limits;
+}
+
 /// Movements of the file that the path names; none without one. A flight plan has an origin and a ground.
-path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::PathDefaults& defaults,
-                               MissionSetup& mission) {
+path::PlanEntries read_planned(const TomlTable& path, const path::Wind& wind, bool is_rotorcraft,
+                               path::PathDefaults& defaults, MissionSetup& mission) {
     const path::AutopilotSettings settings{
         optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "radius_m"),
-        defaults.airspeed_m_per_s, is_rotorcraft, path.optional_boolean("one_airspeed").value_or(false),
-        path.has("terrain") ? named_file(path, "terrain") : ""};
+        defaults.airspeed_m_per_s,
+        is_rotorcraft,
+        path.optional_boolean("one_airspeed").value_or(false),
+        path.has("terrain") ? named_file(path, "terrain") : "",
+        wind,
+        read_turn_limits(path, is_rotorcraft)};
     if (settings.one_airspeed && !path.has("airspeed_m_per_s"))
         throw InputError(path.where("one_airspeed"), "one_airspeed needs airspeed_m_per_s", "add it");
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
@@ -325,9 +339,10 @@ path::PlanEntries read_planned(const TomlTable& path, bool is_rotorcraft, path::
 }
 
 /// Those of a file first, then the legs. A file's first altitude is that of the start unless the path states one.
-path::PlanEntries read_entries(const TomlTable& path, path::PathDefaults& defaults, MissionSetup& mission) {
+path::PlanEntries read_entries(const TomlTable& path, const path::Wind& wind, path::PathDefaults& defaults,
+                               MissionSetup& mission) {
     const bool is_rotorcraft = mission.mechanical && mission.mechanical->is_rotorcraft;
-    auto plan = read_planned(path, is_rotorcraft, defaults, mission);
+    auto plan = read_planned(path, wind, is_rotorcraft, defaults, mission);
     if (!path.has("airspeed_m_per_s") && plan.speed) {
         defaults.airspeed_m_per_s = plan.speed->m_per_s;
         mission.notes.push_back(
@@ -413,18 +428,8 @@ path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntr
     return local_position_at(path, {path.elements.size(), 0.0});
 }
 
-path::TurnLimits read_turn_limits(const TomlTable& path, bool is_rotorcraft) {
-    path::TurnLimits limits{is_rotorcraft};
-    limits.max_bank_deg = number_in_or(between(5.0, 80.0), path, "max_bank_deg", limits.max_bank_deg);
-    limits.radius_m = optional_number_in(between(path::min_radius_m, path::max_radius_m), path, "turn_radius_m");
-    if (limits.radius_m && is_rotorcraft)
-        throw InputError(path.where("turn_radius_m"), "a rotorcraft brakes before corners: it has no turn_radius_m",
-                         "leave it out");
-    return limits;
-}
-
 /// The path as it is drawn, and where it is.
-path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& reading,
+path::PlannedPath read_path(const TomlTable& table, const path::Wind& wind, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
     table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",   "climb_m_per_s", "descent_m_per_s", "start",
                               "return_to_start",  "waypoints",    "flight_plan",   "waypoint_order",  "blocks",
@@ -434,7 +439,7 @@ path::PlannedPath read_path(const TomlTable& table, const MissionReadOptions& re
     require_one_file(table);
     if (table.has("area")) mission.survey = SurveyCoverage{read_layout(table, reading)};
     auto defaults = read_defaults(table, mission);
-    auto planned = read_entries(table, defaults, mission);
+    auto planned = read_entries(table, wind, defaults, mission);
     auto& entries = planned.entries;
     if (reading.counts_written_heights) take_heights_as_written(entries, defaults, mission);
     note_unknown_height(defaults, mission);
@@ -550,8 +555,9 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     apply_precedence_of_path(mission_table, mission);
-    auto plan = read_path(*table, reading, mission_table.optional_table("packs"), mission);
-    plan.wind = read_wind(mission_table);
+    const auto wind = read_wind(mission_table);
+    auto plan = read_path(*table, wind, reading, mission_table.optional_table("packs"), mission);
+    plan.wind = wind;
     if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
     plan.power = power_model(mission_table, *table, plan.wind, mission);
     const bool is_physical = mission.mechanical->physical.has_value();

@@ -4,11 +4,11 @@
 #include "base/toml_reader.h"
 #include "path/plans/patterns.h"
 #include "path/plans/plan_expressions.h"
+#include "path/trajectory.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -18,8 +18,6 @@ namespace flightwatt::path {
 namespace {
 
 using Arguments = std::vector<std::string>;
-
-double circumference_m(double radius_m) { return 2.0 * std::numbers::pi * std::abs(radius_m); }
 
 /// Functions that do not move the aircraft, by how they begin, and those that continue a survey set up before.
 bool is_without_movement(std::string_view function) {
@@ -147,13 +145,12 @@ class BlockReader {
     }
 
     /// The number of rounds of a pattern, which may end after a count or a time; without counters it is flown once.
-    double rounds(const pugi::xml_node& stage, std::initializer_list<std::string_view> counters, double round_m,
+    double rounds(const pugi::xml_node& stage, std::initializer_list<std::string_view> counters, double round_s,
                   std::string_view pattern) {
         const auto until = attribute(stage, "until");
         auto count = find_limit(until, counters);
         const auto time_s = find_limit(until, {"stage_time", "NavBlockTime"});
-        if (!count && time_s && counters.size() > 0 && settings_.airspeed_m_per_s > 0.0)
-            count = *time_s * settings_.airspeed_m_per_s / round_m;
+        if (!count && time_s && round_s > 0.0) count = *time_s / round_s;
         if (count) require_in(at_most(largest_circle_count), *count, "the number of rounds", where(plan_, stage));
         constexpr double min_count = 0.1;
         if (count) return std::max(*count, min_count);
@@ -163,6 +160,21 @@ class BlockReader {
                    : fmt::format("{} ends by a condition ({}): it is flown once", pattern, until),
                pattern != "the survey");  // once covers the area
         return 1.0;
+    }
+
+    /// The time of a round of circles, or of an oval with its lines, in the wind; 0 without an airspeed.
+    double time_of_round_s(double radius_m, const LocalPosition& line = {}) const {
+        if (!(settings_.airspeed_m_per_s > 0.0)) return 0.0;
+        double time_s = circle_time_s(std::abs(radius_m), settings_.airspeed_m_per_s, settings_.wind, settings_.turns);
+        for (const auto& way : {line, LocalPosition{} - line}) {
+            PathElement leg;
+            leg.shape = Leg{distance_between_m({}, way), course_between({}, way)};
+            leg.airspeed_m_per_s = settings_.airspeed_m_per_s;
+            leg.keeps_ground_speed = settings_.turns.is_rotorcraft;
+            if (way != LocalPosition{})
+                time_s += compute_trajectory({{leg}}, settings_.wind, InfeasibleLegPolicy::crawl).duration_s;
+        }
+        return time_s;
     }
 
     PatternWriter pattern(const pugi::xml_node& stage, const PathEntry& waypoint) {
@@ -196,7 +208,7 @@ class BlockReader {
         const auto centre = target(stage);
         if (!centre) return;
         const double radius_m = radius(stage, attribute(stage, "radius"));
-        const double turns = rounds(stage, {"NavCircleCount", "circle_count"}, circumference_m(radius_m),
+        const double turns = rounds(stage, {"NavCircleCount", "circle_count"}, time_of_round_s(radius_m),
                                     fmt::format("the circle around {}", attribute(stage, "wp")));
         entries_.push_back(with_circles(like(stage, *centre), turns, radius_m));
         entries_.back().place = centre->place;
@@ -206,8 +218,8 @@ class BlockReader {
         const auto first = waypoint(stage, attribute(stage, "p1"));
         const auto second = *waypoint(stage, attribute(stage, "p2")).place;
         const double radius_m = radius(stage, attribute(stage, "radius"));
-        const double round_m = 2.0 * distance_between_m(*first.place, second) + circumference_m(radius_m);
-        double count = rounds(stage, {"NavOvalCount", "nav_oval_count"}, round_m, "the oval");
+        double count = rounds(stage, {"NavOvalCount", "nav_oval_count"},
+                              time_of_round_s(radius_m, second - *first.place), "the oval");
         const auto until = attribute(stage, "until");  // the counter is a whole number: above 3 are 4 rounds
         if (const auto limit = find_limit(until, {"NavOvalCount", "nav_oval_count"}))
             count = until.find(">=") == std::string::npos ? std::floor(*limit) + 1.0 : std::max(1.0, std::ceil(*limit));
@@ -217,13 +229,13 @@ class BlockReader {
     void eight(const pugi::xml_node& stage) {
         const auto centre = waypoint(stage, attribute(stage, "center"));
         const auto turn = *waypoint(stage, attribute(stage, "turn_around")).place;
-        rounds(stage, {}, 1.0, "the eight");
+        rounds(stage, {}, 0.0, "the eight");
         pattern(stage, centre).eight(*centre.place, turn, radius(stage, attribute(stage, "radius")));
     }
 
     /// Lines from north to south unless the orientation is WE.
     void survey_rectangle(const pugi::xml_node& stage) {
-        rounds(stage, {}, 1.0, "the survey");
+        rounds(stage, {}, 0.0, "the survey");
         const auto corner = waypoint(stage, attribute(stage, "wp1"));
         const LocalPosition p = *corner.place;
         const LocalPosition q = *waypoint(stage, attribute(stage, "wp2")).place;
@@ -278,7 +290,7 @@ class BlockReader {
     void line(const pugi::xml_node& stage, const Arguments& arguments) {
         const auto first = waypoint(stage, arguments[0]);
         const auto second = *waypoint(stage, arguments[1]).place;
-        rounds(stage, {}, 1.0, "the line");
+        rounds(stage, {}, 0.0, "the line");
         pattern(stage, first).line(*first.place, second, std::abs(radius(stage, arguments[2])));
     }
 

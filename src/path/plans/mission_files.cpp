@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -266,26 +265,26 @@ class ItemReader {
             settings_.airspeed_m_per_s > 0.0 || !speed_ ? settings_.airspeed_m_per_s : speed_->m_per_s;
         const double airspeed = airspeed_m_per_s_.value_or(planned);
         double turns = amount;
-        if (is_time) turns = airspeed > 0.0 ? amount * airspeed / (2.0 * std::numbers::pi * std::abs(radius_m)) : 1.0;
+        require_in(between(-max_radius_m, max_radius_m), radius_m, "the radius", item.where);
+        if (is_time && amount > 0.0)
+            turns = airspeed > 0.0
+                        ? amount / circle_time_s(std::abs(radius_m), airspeed, settings_.wind, settings_.turns)
+                        : 1.0;
         if (!(turns > 0.0)) return fly_to(item, 0.0);
         require_in(between(0.0, largest_circle_count), turns, "the number of circles", item.where);
-        require_in(between(-max_radius_m, max_radius_m), radius_m, "the radius", item.where);
         entries_.push_back(with_circles(entry_at_altitude(item), turns, radius_m));
     }
 
     /// What the autopilots have where nothing was set: NAV_LOITER_RAD of PX4, WP_LOITER_RAD of ArduPlane and
     /// CIRCLE_RADIUS of ArduCopter.
     double assumed_radius_m(const MissionItem& item) {
-        constexpr double px4_m = 80.0, arduplane_m = 60.0, rotorcraft_m = 10.0;
-        const double wing_m = mission_.is_of_ardupilot ? arduplane_m : px4_m;
-        const double radius_m = settings_.is_rotorcraft ? rotorcraft_m : wing_m;
+        const auto [radius_m, autopilot] = settings_.is_rotorcraft    ? std::pair{10.0, "ArduCopter"}
+                                           : mission_.is_of_ardupilot ? std::pair{60.0, "ArduPlane"}
+                                                                      : std::pair{80.0, "PX4"};
         if (!settings_.radius_m)
             report(item, fmt::format("the circle has no radius: {:.0f} m are assumed, of {}; radius_m in [path] states "
                                      "another",
-                                     radius_m,
-                                     settings_.is_rotorcraft    ? "ArduCopter"
-                                     : mission_.is_of_ardupilot ? "ArduPlane"
-                                                                : "PX4"));
+                                     radius_m, autopilot));
         return radius_m;
     }
 

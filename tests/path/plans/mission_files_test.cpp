@@ -6,7 +6,10 @@
 #include "path/plan_files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -220,6 +223,31 @@ TEST(MissionFiles, AssumeTheRadiusThatCirclesDoNotState) {
     EXPECT_EQ(held.entries.back().hold_s, std::optional(50.0)) << "its radius is that of wings";
     EXPECT_FALSE(held.entries.back().circles);
     EXPECT_EQ(plan_of(19, {.radius_m = {}, .is_rotorcraft = true}).entries.back().hold_s, std::optional(50.0));
+}
+
+/// Their number was that of calm air and of the stated radius: in a wind, or with more bank than the limit, 10 min
+/// became up to 66.
+TEST(MissionFiles, CircleForTheStatedTime) {
+    const auto text =
+        qgc(item(19, 3, "600, 0, 10, 1, 47.001, 8.0, 60") + "," + item(19, 3, "600, 0, -100, 1, 47.001, 8.0, 60"));
+    for (const double wind_m_per_s : {0.0, 8.0}) {
+        AutopilotSettings settings{.radius_m = {}, .airspeed_m_per_s = 13.0};
+        settings.wind = {wind_m_per_s, 270.0};
+        const auto plan = parse_qgc_plan(text, "q.plan", settings);
+        const auto stated = plan.entries.size() - 2;
+        for (const auto& [entry, radius_m] :
+             {std::pair{stated, std::pow(13.0 + wind_m_per_s, 2) / 9.80665}, {stated + 1, 100.0}}) {
+            constexpr int steps = 3600;
+            double circle_s = 0.0;
+            for (int i = 0; i < steps; ++i) {
+                const double course = 2.0 * std::numbers::pi * i / steps;
+                const double across = wind_m_per_s * std::cos(course);
+                circle_s += 2.0 * std::numbers::pi * radius_m / steps /
+                            (std::sqrt(13.0 * 13.0 - across * across) + wind_m_per_s * std::sin(course));
+            }
+            EXPECT_NEAR(*plan.entries[entry].circles * circle_s, 600.0, 1.0) << wind_m_per_s << ", " << radius_m;
+        }
+    }
 }
 
 TEST(MissionFiles, FlyAGroundSpeedOfWingsAsAnAirspeed) {
