@@ -14,6 +14,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -190,7 +191,10 @@ class ItemReader {
     /// Above home, but for one above the terrain; frames are MAV_FRAME.
     std::optional<double> altitude_of(const MissionItem& item) {
         const double altitude_m = item.parameters[6];
-        if (std::isnan(altitude_m) || item.frame == 2) return std::nullopt;  // 2: a command without a place
+        if (item.frame == 2) return std::nullopt;  // a command without a place
+        if (std::isnan(altitude_m) && entry_of(item).geographic)
+            report_missing(item, "its altitude is not stated: it is flown as high as the item before");
+        if (std::isnan(altitude_m)) return std::nullopt;
         if (item.parameters[4] == 0.0 && item.parameters[5] == 0.0 && altitude_m == 0.0)
             return std::nullopt;  // as it is
         if (item.frame == 0 || item.frame == 5) {
@@ -264,12 +268,10 @@ class ItemReader {
         const double planned =
             settings_.airspeed_m_per_s > 0.0 || !speed_ ? settings_.airspeed_m_per_s : speed_->m_per_s;
         const double airspeed = airspeed_m_per_s_.value_or(planned);
-        double turns = amount;
         require_in(between(-max_radius_m, max_radius_m), radius_m, "the radius", item.where);
-        if (is_time && amount > 0.0)
-            turns = airspeed > 0.0
-                        ? amount / circle_time_s(std::abs(radius_m), airspeed, settings_.wind, settings_.turns)
-                        : 1.0;
+        double turns = is_time && !(airspeed > 0.0) ? 1.0 : amount;
+        if (is_time && airspeed > 0.0)
+            turns /= circle_time_s(std::abs(radius_m), airspeed, settings_.wind, settings_.turns);
         if (!(turns > 0.0)) return fly_to(item, 0.0);
         require_in(between(0.0, largest_circle_count), turns, "the number of circles", item.where);
         entries_.push_back(with_circles(entry_at_altitude(item), turns, radius_m));
@@ -380,10 +382,6 @@ class MissionFlight {
     std::vector<double> taken_;        ///< how often each jump was followed
 };
 
-PlanEntries fly_items(const MissionItems& mission, const AutopilotSettings& settings) {
-    return MissionFlight(mission).fly(settings);
-}
-
 /// Reads the objects of a .plan. Its own checks throw InputError; a key that is missing, or of another type, is the
 /// exception of the library.
 class QgcReader {
@@ -403,8 +401,7 @@ class QgcReader {
             require_version(mission, 2, 2, name_);
             copy_numbers(mission, "plannedHomePosition", mission_.home);
             read_speed(mission);
-            constexpr int px4 = 12;  // MAV_AUTOPILOT
-            constexpr int ardupilot = 3;
+            constexpr int px4 = 12, ardupilot = 3;  // MAV_AUTOPILOT
             mission_.is_of_px4 = mission.value("firmwareType", Json()) == px4;
             mission_.is_of_ardupilot = mission.value("firmwareType", Json()) == ardupilot;
             const auto rally = plan.value("rallyPoints", Json::object());
@@ -487,6 +484,11 @@ class QgcReader {
         item.command = integer("command");
         item.frame = integer("frame");
         copy_numbers(json, "params", item.parameters);
+        constexpr int above_terrain = 3;  // QGroundControl's mode: null above the sea until it has the terrain's height
+        const auto altitude = json.value("Altitude", Json());
+        if (std::isnan(item.parameters[6]) && json.value("AltitudeMode", Json()) == above_terrain &&
+            altitude.is_number())
+            std::tie(item.frame, item.parameters[6]) = std::pair(10, altitude.get<double>());
         if (const auto id = json.value("doJumpId", Json()); id.is_number()) item.number = id.get<double>();
         mission_.items.push_back(std::move(item));
     }
@@ -505,8 +507,7 @@ class QgcReader {
     /// Surveys and corridors carry the items that they consist of, landing patterns two places.
     void read_complex(const Json& json) {
         name_ += fmt::format(" ({})", json.at("complexItemType").get<std::string>());
-        constexpr int max_version = 5;  // of QGroundControl 4
-        require_version(json, 1, max_version, name_);
+        require_version(json, 1, 5, name_);  // of QGroundControl 4
         if (json.contains("TransectStyleComplexItem"))
             read_items(json["TransectStyleComplexItem"].at("Items"), name_ + ", item", true);
         else if (json.contains("landCoordinate") && json.contains("landingApproachCoordinate"))
@@ -555,7 +556,8 @@ std::vector<double> item_numbers(const std::string& line, const Location& where)
 PlanEntries parse_qgc_plan(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
     QgcReader reader(file, settings.is_rotorcraft);
     const auto json = parse_json(text, file, "expected a plan of QGroundControl");
-    auto plan = fly_items(reader.read(json), settings);
+    const auto mission = reader.read(json);
+    auto plan = MissionFlight(mission).fly(settings);
     plan.fence = read_fence(json);
     return plan;
 }
@@ -592,7 +594,7 @@ PlanEntries parse_wpl(std::string_view text, const std::string& file, const Auto
         mission.items.push_back(std::move(item));
     }
     if (mission.where.line == 0) throw InputError({file}, "has no items", "expected home and waypoints");
-    return fly_items(mission, settings);
+    return MissionFlight(mission).fly(settings);
 }
 
 }  // namespace flightwatt::path

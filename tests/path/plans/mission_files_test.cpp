@@ -250,6 +250,29 @@ TEST(MissionFiles, CircleForTheStatedTime) {
     }
 }
 
+/// QGroundControl saves null before it knows the terrain: the altitude was that of the item before, without a note.
+TEST(MissionFiles, StateThatAnAltitudeIsUnknown) {
+    const auto without_altitude = [](const std::string& more) {
+        return fmt::format(R"({{"type": "SimpleItem", "command": 16, "frame": 0,
+"params": [0, 0, 0, null, 47.001, 8.0, null]{}}})",
+                           more);
+    };
+    const auto before = item(16, 3, "0, 0, 0, null, 47.002, 8.0, 60") + ",";
+    const auto unknown = parse_qgc_plan(qgc(before + without_altitude("")), "q.plan", {});
+    EXPECT_FALSE(unknown.entries.back().altitude_m);
+    EXPECT_EQ(unknown.missing,
+              std::vector<std::string>{"item 2: its altitude is not stated: it is flown as high as the "
+                                       "item before"});
+    const auto above_terrain = parse_qgc_plan(
+        qgc(before + without_altitude(R"(, "AMSLAltAboveTerrain": null, "Altitude": 80, "AltitudeMode": 3)")), "q.plan",
+        {});
+    EXPECT_EQ(above_terrain.entries.back().altitude_m, std::optional(80.0));
+    EXPECT_EQ(above_terrain.missing.size(), 1U) << "without tiles of the terrain";
+    EXPECT_TRUE(
+        parse_qgc_plan(qgc(before + item(18, 3, "2, 0, 60, 1, null, null, null")), "q.plan", {}).missing.empty())
+        << "circles where it is";
+}
+
 TEST(MissionFiles, FlyAGroundSpeedOfWingsAsAnAirspeed) {
     for (const bool is_rotorcraft : {false, true}) {
         const auto plan = parse_qgc_plan(
