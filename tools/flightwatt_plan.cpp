@@ -152,6 +152,8 @@ void write_packs(const cli::StageCall& call, const PlanArguments& arguments, con
         files[folder / plan_name] = std::move(written.text);
         mission::PlannedPack pack{flight.pack, setup.name, plan_name, {}};
         if (format == path::PlanFormat::flight_plan) pack.blocks = {path::written_block};
+        if (format != path::PlanFormat::qgroundcontrol)
+            pack.airspeed_m_per_s = drawn_path(plan).elements.front().airspeed_m_per_s;
         files[folder / (name + ".toml")] =
             fmt::format("# {}\n", one_line(describe(flight.flown.simulation.summary))) +
             planned_mission_toml(file.text, file.path, setup.compute, flight.flown.schedule, folder, {}, pack).text;

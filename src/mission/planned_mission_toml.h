@@ -21,10 +21,11 @@ struct PlannedMissionText {
 
 /// The flight with one pack of a mission with [packs], whose path is a plan of its own.
 struct PlannedPack {
-    std::size_t pack = 1;             ///< its number
-    std::string name;                 ///< of the mission
-    std::string plan_file;            ///< as the mission names it
-    std::vector<std::string> blocks;  ///< of a flight plan of Paparazzi
+    std::size_t pack = 1;                         ///< its number
+    std::string name;                             ///< of the mission
+    std::string plan_file;                        ///< as the mission names it
+    std::vector<std::string> blocks;              ///< of a flight plan of Paparazzi
+    std::optional<double> airspeed_m_per_s = {};  ///< if the plan's file has none: the path's, unless that states one
 };
 
 /// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]], and with

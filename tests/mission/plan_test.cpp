@@ -11,7 +11,9 @@
 #include <cmath>
 #include <random>
 #include <regex>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -226,6 +228,18 @@ TEST(Plan, IsWrittenAsAMission) {
     const auto summary = simulate(again).summary;
     EXPECT_EQ(summary.final_soc_percent, plan.summary.final_soc_percent);
     EXPECT_EQ(summary.utility, plan.summary.utility);
+}
+
+/// A mission of a .plan has its airspeed from there: as .waypoints it had none, and could not be read.
+TEST(Plan, OfAPackHasTheAirspeedThatItsFileDoesNotState) {
+    const auto folder = test::scratch_dir();
+    for (const auto& [stated, expected] : {std::pair{"", "12.5"}, {"airspeed_m_per_s = 14.5\n", "14.5"}}) {
+        const auto text = fmt::format(
+            "mechanical = 'm.toml'\nbattery = 'b.toml'\n[path]\nwaypoints = 'a.plan'\n{}[packs]\ncount = 2\n", stated);
+        const PlannedPack pack{1, "m, pack 1", "pack-1.waypoints", {}, 12.5};
+        const auto written = planned_mission_toml(text, folder / "m.toml", {}, {}, folder, {}, pack).text;
+        EXPECT_NE(written.find(fmt::format("airspeed_m_per_s = {}\n", expected)), std::string::npos) << written;
+    }
 }
 
 struct WrittenPlan {
