@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "mission/file/takeoff_height.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_search.h"
 #include "path/path.h"
@@ -284,7 +285,9 @@ std::string describe_path_times(const MissionSetup& mission, double times) {
     const auto& plan = *mission.cruise_path->plan;
     const auto& drawn = drawn_path(plan);
     const auto flown_s = [&](double count) {
-        return compute_trajectory(as_flown(plan, repeated(drawn, plan.wind, count)), plan.wind).duration_s;
+        const auto rates = mission.mechanical ? flown_rates(*mission.mechanical) : path::ClimbRates{};
+        const auto part = repeated(drawn, plan.wind, count, rates);
+        return compute_trajectory(as_flown(plan, part), plan.wind).duration_s;
     };
     const double whole = std::floor(times);
     const double share_percent = units::percentage(times - whole, 1.0);
@@ -293,7 +296,7 @@ std::string describe_path_times(const MissionSetup& mission, double times) {
         const auto end = position_at(once, times * once.duration_s).element;
         const auto& elements = drawn.elements;
         return fmt::format("{:.0f} % of the path fits{}: {} of {}, until element {} of {}, {}", share_percent,
-                           elements.back().is_return_leg ? " with the way back from there" : "",
+                           returns_to_start(drawn) ? " with the way back from there" : "",
                            duration_text(flown_s(times)), duration_text(flown_s(1.0)), end + 1, elements.size(),
                            elements.at(end).name);
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -204,19 +205,28 @@ class PathFlight {
     const PathElement* element_ = nullptr;
 };
 
-/// The straight leg from the end of a path to its start; none for a path that ends there.
-std::optional<PathElement> way_back(const FlightPath& path) {
-    constexpr double same_place_m = 1e-3;
+/// The straight leg from the end of a path to its start, if these differ. A height that the rates do not change on such
+/// a way changes above the start.
+std::vector<PathElement> way_back(const FlightPath& path, const ClimbRates& rates) {
     const auto end = local_position_at(path, {path.elements.size(), 0.0});
     const double length_m = std::hypot(end.east_m, end.north_m);
-    if (length_m <= same_place_m) return std::nullopt;
     PathElement back = path.elements.back();
     back.shape = Leg{length_m, std::atan2(-end.east_m, -end.north_m) * units::degree_per_rad};
     back.name = "way back to the start";
     back.climb_rate_m_per_s.reset();
     back.altitude_change_m = 0.0;
     for (const auto& element : path.elements) back.altitude_change_m -= element.altitude_change_m;
-    return back;
+    const double height_m = std::abs(back.altitude_change_m);
+    const auto rate = back.altitude_change_m > 0.0 ? rates.climb_m_per_s : rates.descent_m_per_s;
+    std::vector<PathElement> ways{back};
+    constexpr double same_height_m = 1e-3;
+    if (rate && height_m > same_height_m && height_m / *rate * back.airspeed_m_per_s > length_m) {
+        ways.front().altitude_change_m = 0.0;
+        ways.push_back(back);
+        ways.back().shape = Hold{height_m / *rate, std::nullopt, back.keeps_ground_speed};
+    }
+    if (returns_to_start(path)) ways.erase(ways.begin());
+    return ways;
 }
 
 }  // namespace
@@ -233,7 +243,12 @@ std::optional<double> ground_speed_m_per_s(const PathElement& element, double cl
     return drift ? std::optional(drift->ground_speed_m_per_s) : std::nullopt;
 }
 
-FlightPath repeated(const FlightPath& path, const Wind& wind, double times) {
+bool returns_to_start(const FlightPath& path) {
+    constexpr double same_place_m = 1e-3;
+    return distance_between_m(local_position_at(path, {path.elements.size(), 0.0}), {}) <= same_place_m;
+}
+
+FlightPath repeated(const FlightPath& path, const Wind& wind, double times, const ClimbRates& rates) {
     const auto add_share = [&](const FlightPath& round, double share, FlightPath& to) {
         const auto flown = compute_trajectory(round, wind);
         const auto part = path_between(round, {}, position_at(flown, share * flown.duration_s));
@@ -241,12 +256,11 @@ FlightPath repeated(const FlightPath& path, const Wind& wind, double times) {
     };
     FlightPath result;
     add_share(path, std::min(times, 1.0), result);
-    const auto back = way_back(path);
-    FlightPath round = path;
-    if (back) round.elements.insert(round.elements.begin(), *back);
+    FlightPath round{way_back(path, rates)};
+    round.elements.insert(round.elements.end(), path.elements.begin(), path.elements.end());
     for (double left = times - 1.0; left > 0.0; left -= 1.0) add_share(round, std::min(left, 1.0), result);
-    if (!back)
-        if (auto home = way_back(result)) result.elements.push_back(std::move(*home));
+    if (!returns_to_start(path) || returns_to_start(result)) return result;
+    std::ranges::move(way_back(result, rates), std::back_inserter(result.elements));
     return result;
 }
 

@@ -44,10 +44,14 @@ PathTrajectory compute_trajectory(const FlightPath& path, const Wind& wind,
 std::optional<double> ground_speed_m_per_s(const PathElement& element, double climb_m_per_s, double course_deg,
                                            const Wind& wind);
 
+/// Returns whether a path ends where it starts.
+bool returns_to_start(const FlightPath& path);
+
 /// Returns the path flown `times` times, from its end straight back to its start before each time but the first; the
 /// last time up to a fraction of its duration in the wind, and from there straight back if the path itself ends at its
-/// start. Throws as compute_trajectory().
-FlightPath repeated(const FlightPath& path, const Wind& wind, double times);
+/// start. Heights too large for such a way at the rates, if known, change above the start. Throws as
+/// compute_trajectory().
+FlightPath repeated(const FlightPath& path, const Wind& wind, double times, const ClimbRates& rates = {});
 
 /// Returns the position on a path at a time from its start, at most its duration.
 PathPosition position_at(const PathTrajectory& flown, double time_s);

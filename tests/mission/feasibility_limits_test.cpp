@@ -157,6 +157,9 @@ TEST(PathLimits, FindHowOftenThePathFits) {
     EXPECT_NEAR(less.value, 0.2 * 36000.0 / 21.97 * 13.0 / 9000.0, 1e-6);
     EXPECT_EQ(describe_path_times(setup, 0.8),
               "80 % of the path fits: 9 min 14 s of 11 min 32 s, until element 2 of 2, leg");
+    const auto there_and_back = path_mission({{path_element(Leg{600.0, 0.0}), path_element(Leg{600.0, 180.0})}});
+    EXPECT_THAT(describe_path_times(there_and_back.setup, 0.5),
+                testing::HasSubstr("fits with the way back from there"));
     EXPECT_THROW(most_path_times(mission_of(100.5)), NoResultError);
     auto turn = path_element(Circles{100.0, 0.5});
     turn.is_turn = true;

@@ -130,6 +130,24 @@ TEST(Repeated, AFractionOfAPathThatReturnsReturnsToo) {
     EXPECT_NEAR(compute_trajectory(repeated(there, {}, 1.5), {}).duration_s, 600.0 / 13.0, 1e-6);
 }
 
+/// The way home was as steep as the airspeed: 300 m of height in its last metres saved a battery on paper.
+TEST(Repeated, ReturnsNoSteeperThanTheRates) {
+    FlightPath round{{element_of(Leg{300.0, 0.0}), element_of(Leg{300.0, 180.0})}};
+    round.elements.front().altitude_change_m = 100.0;
+    const ClimbRates rates{2.0, 1.5};
+    const auto short_of = repeated(round, {}, 0.99, rates);
+    ASSERT_EQ(short_of.elements.size(), 4U);
+    EXPECT_EQ(short_of.elements[2].altitude_change_m, 0.0);
+    EXPECT_NEAR(std::get<Hold>(short_of.elements[3].shape).time_s, 100.0 / 1.5, 1e-9);
+    EXPECT_NEAR(short_of.elements[3].altitude_change_m, -100.0, 1e-9);
+    EXPECT_EQ(repeated(round, {}, 1.0, rates).elements.size(), 2U) << "the landing is from its end";
+    const auto twice = repeated(round, {}, 2.0, rates);
+    ASSERT_EQ(twice.elements.size(), 5U);
+    EXPECT_NEAR(twice.elements[2].altitude_change_m, -100.0, 1e-9) << "each time begins as high";
+    round.elements.front().altitude_change_m = 10.0;
+    EXPECT_EQ(repeated(round, {}, 0.5, rates).elements.size(), 2U);
+}
+
 TEST(Trajectory, CirclesInCalmAirTakeTheirLength) {
     const auto flown = compute_trajectory({{element_of(Circles{75.0, 2.5})}}, {});
     ASSERT_EQ(flown.pieces.size(), 1U);

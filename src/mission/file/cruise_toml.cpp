@@ -558,7 +558,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     const auto wind = read_wind(mission_table);
     auto plan = read_path(*table, wind, reading, mission_table.optional_table("packs"), mission);
     plan.wind = wind;
-    if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times);
+    if (reading.path_times && mission.mechanical)
+        plan.path = repeated(plan.path, plan.wind, *reading.path_times, flown_rates(*mission.mechanical));
     plan.power = power_model(mission_table, *table, plan.wind, mission);
     const bool is_physical = mission.mechanical->physical.has_value();
     add_turns_of_induced_drag(plan.power);
