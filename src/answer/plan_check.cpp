@@ -31,6 +31,9 @@ struct Change {
     mission::MissionReadOptions reading = {};
 };
 
+/// Whether flights are drawn: not for one that fails as modelled, where only its success matters.
+enum class Draws { none, if_kept, always };
+
 /// A flown plan.
 struct Flown {
     mission::MissionVariant mission;
@@ -65,12 +68,13 @@ class PlanFlight {
         }
     }
 
-    Flown fly(const Change& change = {}, bool draws = true) const { return fly(mission(change), draws); }
+    Flown fly(const Change& change = {}, Draws draws = Draws::always) const { return fly(mission(change), draws); }
 
-    Flown fly(mission::MissionVariant mission, bool draws = true) const {
+    Flown fly(mission::MissionVariant mission, Draws draws = Draws::always) const {
         const auto prepared = prepare_mission(mission);
         Flown flown{std::move(mission), simulate_prepared(prepared).simulation, {}, {}};
-        if (!draws || !has_uncertainty(prepared.setup)) return flown;
+        if (draws == Draws::none || !has_uncertainty(prepared.setup)) return flown;
+        if (draws == Draws::if_kept && !flown.summary().keeps_reserve) return flown;
         const auto drawn = sample_flights(prepared, {}, {question_.samples, question_.seed});
         if (!drawn.variability_is_known) return flown;
         flown.probability = 1.0 - drawn.probability_below_reserve;
@@ -179,7 +183,7 @@ class Remedies {
         double best_percent = flown ? left_percent(flown->summary()) + noted_percent : -1e9;
         for (const double value : values) {
             try {
-                const double percent = left_percent(flight_.fly(change_to(value), false).summary());
+                const double percent = left_percent(flight_.fly(change_to(value), Draws::none).summary());
                 if (percent < best_percent) continue;
                 best_percent = percent;
                 best = value;
@@ -218,7 +222,9 @@ class Remedies {
         if (!survey) return;
         constexpr double max_times = 16.0;
         const double own_m = survey->layout.strips.front().spacing_m;
-        const auto with = [&](double times) { return flight_.fly(Change{.spacing_m = std::ceil(own_m * times)}); };
+        const auto with = [&](double times) {
+            return flight_.fly(Change{.spacing_m = std::ceil(own_m * times)}, Draws::if_kept);
+        };
         if (!flight_.suffices(with, max_times)) return;
         const double times_less = greatest(1.0 / max_times, 1.0, [&](double less) { return with(1.0 / less); });
         const double spacing_m = std::ceil(own_m / times_less);
@@ -234,7 +240,9 @@ class Remedies {
     }
 
     void add_part() {
-        const auto with = [&](double part) { return flight_.fly(Change{.reading = {.path_times = part}}); };
+        const auto with = [&](double part) {
+            return flight_.fly(Change{.reading = {.path_times = part}}, Draws::if_kept);
+        };
         const double part = greatest(0.0, 1.0, with);
         if (part > 0.0) add("part", part, describe_path_times(mission::setup_of(flight_.mission()), part), with(part));
     }
@@ -244,7 +252,9 @@ class Remedies {
         constexpr double steps_per_ah = 100.0;
         const auto& mission = std::get<mission::Mission>(flown.mission);
         const double own_ah = mission.setup.battery.capacity_ah;
-        const auto with = [&](double capacity_ah) { return flight_.fly(with_capacity(mission, capacity_ah)); };
+        const auto with = [&](double capacity_ah) {
+            return flight_.fly(with_capacity(mission, capacity_ah), Draws::if_kept);
+        };
         double high = 2.0;
         while (high < max_times && !flight_.suffices(with(high * own_ah))) high *= 2.0;
         if (high >= max_times) return;
@@ -259,8 +269,9 @@ class Remedies {
     void add_payload() {
         const double payload_kg = question_.aircraft.payload_kg.value_or(0.0);
         if (!(payload_kg > 0.0)) return;
-        const auto with = [&](double kg) { return flight_.fly(Change{.payload_kg = kg}); };
-        if (!flight_.suffices(with, 0.0)) return add("payload", 0.0, "no payload", with(0.0));
+        const auto with = [&](double kg) { return flight_.fly(Change{.payload_kg = kg}, Draws::if_kept); };
+        if (!flight_.suffices(with, 0.0))
+            return add("payload", 0.0, "no payload", flight_.fly(Change{.payload_kg = 0.0}));
         constexpr double steps_per_kg = 1000.0;
         const double kg = std::floor(greatest(0.0, payload_kg, with) * steps_per_kg) / steps_per_kg;
         add("payload", kg, fmt::format("a payload of {:.3g} kg instead of {:.3g} kg", kg, payload_kg), with(kg));
