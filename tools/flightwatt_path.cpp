@@ -19,6 +19,7 @@
 #include "path/plan_files.h"
 #include "stages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -88,13 +89,17 @@ struct FlightPathOutput {
     std::string flight;
     std::size_t waypoints = 0;
     double duration_s = 0.0;
+    std::optional<double> ground_altitude_m;
 };
 
 Fields<FlightPathOutput> record_fields(const FlightPathOutput*) {
     using R = FlightPathOutput;
-    return {field("flight", &R::flight, "name of the flight"),
-            field("waypoints", &R::waypoints, "number of the waypoints"),
-            field("duration_s", &R::duration_s, "duration of the cruise")};
+    return {
+        field("flight", &R::flight, "name of the flight"), field("waypoints", &R::waypoints, "number of the waypoints"),
+        field("duration_s", &R::duration_s, "duration of the cruise"),
+        field("ground_altitude_m", &R::ground_altitude_m,
+              "the log's altitude of the ground, above which those of the waypoints are; null: unknown, they are as "
+              "in the log")};
 }
 
 constexpr int digits = 10;
@@ -175,39 +180,57 @@ int show_path(const cli::StageCall& call) {
     return cli::ok;
 }
 
-const flight::PhaseSpan& cruise_of(const flight::LoadedFlight& flight, const std::string& file) {
+const flight::Sortie& only_sortie(const flight::LoadedFlight& flight, const std::string& file) {
     const auto& sorties = flight.phases.sorties;
     if (sorties.size() != 1)
         throw InputError({file}, fmt::format("has {} flights", sorties.size()), "choose one: --sortie N");
-    for (const auto& phase : sorties.front().phases)
-        if (phase.phase == flight::Phase::cruise) return phase;
-    throw InputError({file}, "has no cruise");
+    return sorties.front();
+}
+
+/// The log's altitude of the ground, unless the log begins and ends in the air.
+std::optional<double> ground_altitude_m(const flight::Sortie& sortie) {
+    const auto is_from_ground = [](const flight::PhaseSpan& phase) {
+        return phase.phase != flight::Phase::cruise && phase.complete;
+    };
+    return std::ranges::any_of(sortie.phases, is_from_ground) ? std::optional(sortie.ground_altitude_m) : std::nullopt;
 }
 
 int take_path(const cli::StageCall& call, flight::LoadOptions options, const std::string& file) {
     options.power_required = false;
     const auto loaded = cli::load_flight(call, file, options);
     if (!loaded.exclusion.empty()) throw InputError({file}, "is not used: " + loaded.exclusion);
-    const auto path = flown_path(loaded.data, cruise_of(loaded, file));
+    const auto& sortie = only_sortie(loaded, file);
+    const auto cruise = std::ranges::find(sortie.phases, flight::Phase::cruise, &flight::PhaseSpan::phase);
+    if (cruise == sortie.phases.end()) throw InputError({file}, "has no cruise");
+    const auto path = flown_path(loaded.data, *cruise);
+    const auto ground_m = ground_altitude_m(sortie);
     CsvWriter csv({path.is_geographic ? "latitude_deg" : "east_m", path.is_geographic ? "longitude_deg" : "north_m",
                    "altitude_m", "airspeed_m_per_s", "duration_s"},
                   digits);
     double duration_s = 0.0;
     for (const auto& place : path.waypoints) {
         const bool is_first = place.duration_s == 0.0;
-        csv.add(place.east_m, place.north_m, place.altitude_m,
+        csv.add(place.east_m, place.north_m, place.altitude_m - ground_m.value_or(0.0),
                 is_first ? std::nullopt : std::optional(place.airspeed_m_per_s),
                 is_first ? std::nullopt : std::optional(place.duration_s));
         duration_s += place.duration_s;
     }
     write_csv_result(call, csv.text(), {loaded.data.flight + ": where it flew", {}});
     if (call.json) {
-        cli::print_json(call, FlightPathOutput{loaded.data.flight, path.waypoints.size(), duration_s});
+        cli::print_json(call, FlightPathOutput{loaded.data.flight, path.waypoints.size(), duration_s, ground_m});
     } else {
         cli::note(call, fmt::format("{}: {} waypoints of a cruise of {}, each with how long the way there took: a "
                                     "mission that is to fly them in another wind leaves duration_s out",
                                     loaded.data.flight, path.waypoints.size(), duration_text(duration_s)));
     }
+    if (!ground_m)
+        cli::warn(call, fmt::format("{}: neither take-off nor landing is complete: its altitudes are as in the log, "
+                                    "perhaps above the sea: ground_altitude_m in [path] states that of the ground",
+                                    loaded.data.flight));
+    else if (!call.json)
+        cli::note(call, fmt::format("{}: its altitudes are above the ground, at {:.0f} m in the log: with them belongs "
+                                    "ground_altitude_m = 0 in [path]",
+                                    loaded.data.flight, *ground_m));
     return cli::ok;
 }
 
@@ -239,7 +262,7 @@ Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of Ardu
 a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place about every 30 s, and between them as many as keep lines within 3 m of the track, with the
-airspeed on the way there and how long it took.)"};
+airspeed on the way there and how long it took. Altitudes are above the ground, if the log shows where that is.)"};
     stage.next = [](const auto& call) {
         if (call.inputs.empty()) return "waypoints = \"{}\" in the [path] of a mission";
         return call.inputs.front().ends_with(".toml")

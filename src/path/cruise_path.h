@@ -26,9 +26,10 @@ struct PlannedPath {
     FlightPath path;  ///< as it is flown
     Wind wind;
     mechanical::PhysicalModel power;
-    std::optional<TurnLimits> turns = std::nullopt;   ///< absent: the path is flown as it is drawn
-    FlightPath drawn = {};                            ///< the path without the turns, if there are limits
-    std::optional<PathOrigin> origin = std::nullopt;  ///< absent: in metres from an unknown place
+    std::optional<TurnLimits> turns = std::nullopt;             ///< absent: the path is flown as it is drawn
+    FlightPath drawn = {};                                      ///< the path without the turns, if there are limits
+    std::optional<PathOrigin> origin = std::nullopt;            ///< absent: in metres from an unknown place
+    std::optional<double> start_above_ground_m = std::nullopt;  ///< height of its start above home, if it is known
 };
 
 /// Returns the path without its turns.

@@ -107,7 +107,6 @@ struct PathOrigin {
     LocalPosition start = {};               ///< of the path, from there
     double ground_m = 0.0;                  ///< altitude of the ground above the sea; 0 where it is unknown
     std::optional<double> altitude_m = {};  ///< of the start above the ground
-    bool is_above_ground = false;           ///< what the altitude is above is known
     bool is_above_sea = false;              ///< the altitude is above the sea, and that of the ground is unknown
 };
 

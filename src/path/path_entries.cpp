@@ -54,10 +54,14 @@ class PathBuilder {
     std::optional<PathOrigin> origin() const {
         const auto place = origin_ ? origin_ : defaults_.local_origin;
         if (!place) return std::nullopt;
-        PathOrigin origin{
-            *place, start_, defaults_.ground_m, start_altitude_m_, defaults_.is_above_ground, defaults_.is_above_sea};
+        PathOrigin origin{*place, start_, defaults_.ground_m, start_altitude_m_, defaults_.is_above_sea};
         if (origin.altitude_m) *origin.altitude_m -= origin.ground_m;
         return origin;
+    }
+
+    std::optional<double> start_above_ground_m() const {
+        if (!start_altitude_m_ || !defaults_.is_above_ground) return std::nullopt;
+        return *start_altitude_m_ - defaults_.ground_m;
     }
 
     FlightPath finish() {
@@ -259,6 +263,12 @@ std::optional<PathOrigin> path_origin(const std::vector<PathEntry>& entries, con
     PathBuilder builder(defaults, entries);
     for (const auto& entry : entries) builder.add(entry);  // the first may state the altitude
     return builder.origin();
+}
+
+std::optional<double> start_above_ground_m(const std::vector<PathEntry>& entries, const PathDefaults& defaults) {
+    PathBuilder builder(defaults, entries);
+    for (const auto& entry : entries) builder.add(entry);
+    return builder.start_above_ground_m();
 }
 
 }  // namespace flightwatt::path

@@ -88,4 +88,7 @@ FlightPath build_path(const std::vector<PathEntry>& entries, const PathDefaults&
 /// Returns where the path of the entries is; std::nullopt for one in metres from an unknown place.
 std::optional<PathOrigin> path_origin(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
 
+/// Returns the height [m] of the path's start above the ground of home; std::nullopt if it is not known.
+std::optional<double> start_above_ground_m(const std::vector<PathEntry>& entries, const PathDefaults& defaults);
+
 }  // namespace flightwatt::path

@@ -360,6 +360,7 @@ path::PlanEntries read_entries(const TomlTable& path, const path::Wind& wind, pa
     defaults.starts_at_first_place = plan.starts_at_first_place;
     if (plan.is_above_home) defaults.is_above_ground = true;
     if (plan.is_above_sea) defaults.is_above_sea = true;
+    read_ground_altitude(path, defaults);
     if (plan.starts_at_home && (defaults.start || defaults.geographic_start)) entries.erase(entries.begin());
     const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
     if (!defaults.altitude_m && first != entries.end()) defaults.altitude_m = first->altitude_m;
@@ -431,11 +432,11 @@ path::LocalPosition read_home(const TomlTable& packs, std::vector<path::PathEntr
 /// The path as it is drawn, and where it is.
 path::PlannedPath read_path(const TomlTable& table, const path::Wind& wind, const MissionReadOptions& reading,
                             const std::optional<TomlTable>& packs, MissionSetup& mission) {
-    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",   "climb_m_per_s", "descent_m_per_s", "start",
-                              "return_to_start",  "waypoints",    "flight_plan",   "waypoint_order",  "blocks",
-                              "radius_m",         "area",         "spacing_m",     "heading_deg",     "leg",
-                              "max_bank_deg",     "one_airspeed", "turn_radius_m", "strip",           "swath_m",
-                              "utility",          "terrain"});
+    table.refuse_keys_except({"airspeed_m_per_s", "altitude_m",   "climb_m_per_s",    "descent_m_per_s", "start",
+                              "return_to_start",  "waypoints",    "flight_plan",      "waypoint_order",  "blocks",
+                              "radius_m",         "area",         "spacing_m",        "heading_deg",     "leg",
+                              "max_bank_deg",     "one_airspeed", "turn_radius_m",    "strip",           "swath_m",
+                              "utility",          "terrain",      "ground_altitude_m"});
     require_one_file(table);
     if (table.has("area")) mission.survey = SurveyCoverage{read_layout(table, reading)};
     auto defaults = read_defaults(table, mission);
@@ -449,6 +450,7 @@ path::PlannedPath read_path(const TomlTable& table, const path::Wind& wind, cons
     path::PlannedPath plan;
     plan.path = build_path(entries, defaults);
     plan.origin = path_origin(entries, defaults);
+    plan.start_above_ground_m = start_above_ground_m(entries, defaults);
     if (plan.origin && planned.home_altitude_m) plan.origin->ground_m = *planned.home_altitude_m;
     note_rate_on_spot(plan.path, defaults.rates_on_spot, mission);
     if (plan.origin)

@@ -1,11 +1,13 @@
 #include "mission/file/takeoff_height.h"
 
+#include "base/error.h"
 #include "base/units.h"
 #include "path/plan_writer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -65,6 +67,16 @@ void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rat
     }
 }
 
+void read_ground_altitude(const TomlTable& path, path::PathDefaults& defaults) {
+    constexpr std::string_view key = "ground_altitude_m";
+    if (!path.has(key)) return;
+    if (defaults.is_above_ground)
+        throw InputError(path.where(key), "the plan states how high its altitudes are above home", "leave it out");
+    defaults.ground_m = number_in(between(-1e4, 1e4), path, key);
+    defaults.is_above_ground = true;
+    defaults.is_above_sea = false;
+}
+
 void note_unknown_height(const path::PathDefaults& defaults, MissionSetup& mission) {
     if (!mission.mechanical || !defaults.altitude_m || defaults.is_above_ground) return;
     const auto flown = with_heights(mission.mechanical->phases[Phase::takeoff]);
@@ -101,9 +113,9 @@ void take_heights_as_written(const std::vector<path::PathEntry>& entries, path::
 TakeoffAndLanding takeoff_and_landing(const MissionSetup& mission) {
     TakeoffAndLanding ends{mission.duration_s};
     const auto& plan = *mission.cruise_path->plan;
-    if (!plan.origin || !plan.origin->is_above_ground || !plan.origin->altitude_m) return ends;
+    if (!plan.start_above_ground_m) return ends;
     PerPhase<double> height_m;
-    height_m[Phase::takeoff] = height_m[Phase::landing] = *plan.origin->altitude_m;
+    height_m[Phase::takeoff] = height_m[Phase::landing] = *plan.start_above_ground_m;
     for (const auto& element : plan.path.elements) height_m[Phase::landing] += element.altitude_change_m;
     double energy_j = path::energy_j(*mission.cruise_path);
     double uncertain_j = 0.0;

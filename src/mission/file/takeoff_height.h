@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/toml_reader.h"
 #include "mission/mission.h"
 #include "path/path_entries.h"
 
@@ -13,6 +14,10 @@ path::ClimbRates flown_rates(const mechanical::MechanicalModel& model);
 
 /// Notes the first change of height above one place that has its rate from the model.
 void note_rate_on_spot(const path::FlightPath& path, const path::ClimbRates& rates, MissionSetup& mission);
+
+/// Reads `ground_altitude_m` of a path, if it has it: its altitudes are then known to be above that. Throws InputError
+/// for one whose plan states them above home.
+void read_ground_altitude(const TomlTable& path, path::PathDefaults& defaults);
 
 /// Notes that take-off and landing do not follow from altitudes of which a file does not state how high they are above
 /// home, where the path begins higher than the model's flights climbed.

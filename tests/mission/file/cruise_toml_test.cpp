@@ -382,6 +382,30 @@ TEST(PathToml, ClimbsToThePlansAltitudeAndDescendsFromIt) {
     EXPECT_THAT(at(50.0, 50.0, "", "wing.toml").notes, Contains(HasSubstr("120 m are assumed")));
 }
 
+TEST(PathToml, TakesOffFromTheStatedGround) {
+    const auto folder = folder_with_heights();
+    const auto setup = [&](const std::string& keys) {
+        return read(folder, "heights.toml", "[path]\nairspeed_m_per_s = 13\n" + keys).setup;
+    };
+    const std::string leg = "altitude_m = 510\nleg = [{ length_m = 2600, course_deg = 0 }]\n";
+    const auto unknown = setup(leg);
+    const auto stated = setup("ground_altitude_m = 400\n" + leg);
+    EXPECT_NEAR(stated.duration_s[Phase::takeoff] - unknown.duration_s[Phase::takeoff], 60.0 / 4.0, 1e-9);
+    EXPECT_NEAR(stated.duration_s[Phase::landing] - unknown.duration_s[Phase::landing], 60.0 / 2.0, 1e-9);
+    EXPECT_THAT(stated.uncertain, Not(Contains(HasSubstr("is not stated"))));
+    write_text(folder / "a.kml",
+               "<kml><LineString><altitudeMode>absolute</altitudeMode><coordinates>8,47,285 8,47.02,285</coordinates>"
+               "</LineString></kml>");
+    const auto kml = setup("ground_altitude_m = 185\nwaypoints = \"a.kml\"\n");
+    EXPECT_NEAR(kml.duration_s[Phase::takeoff] - unknown.duration_s[Phase::takeoff], 50.0 / 4.0, 1e-9);
+    EXPECT_FALSE(kml.cruise_path->plan->origin->is_above_sea);
+    EXPECT_EQ(kml.cruise_path->plan->origin->altitude_m, std::optional(100.0));
+    write_text(folder / "q.plan", plan_at(50.0, 50.0));
+    EXPECT_NE(rejected([&] { setup("ground_altitude_m = 400\nwaypoints = \"q.plan\"\n"); }, folder)
+                  .find("the plan states how high its altitudes are above home"),
+              std::string::npos);
+}
+
 /// Files of packs state altitudes above home where the mission does not state it: they climbed higher than was planned.
 TEST(PathToml, CountsTheHeightsThatTheFilesOfPacksState) {
     const auto folder = folder_with_heights();
