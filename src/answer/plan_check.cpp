@@ -171,6 +171,13 @@ class Remedies {
         PlanRemedy remedy{
             kind, text, value, flown.summary().final_soc_percent, flown.probability, flight_.suffices(flown)};
         if (!flown.summary().feasible) remedy.final_soc_percent.reset();
+        // A change that makes the answer uncertain is no certain help.
+        const auto known = check_.flown ? check_.flown->uncertain : std::vector<std::string>();
+        for (const auto& reason : flown.summary().uncertain) {
+            if (flown.summary().uncertain.size() <= known.size() || std::ranges::count(known, reason) > 0) continue;
+            remedy.text += fmt::format(" (uncertain: {})", reason);
+            remedy.suffices = false;
+        }
         check_.remedies.push_back(std::move(remedy));
     }
 

@@ -206,9 +206,9 @@ TEST(PlanCheck, AnswersWhereAPartOfThePathCannotBeFlown) {
     EXPECT_THAT(check.remedies, Contains(Field(&PlanRemedy::kind, "pack")));
 }
 
-/// A rotorcraft's autopilot keeps the speed over ground: a wind above it was "no".
-TEST(PlanCheck, OfARotorcraftTakesAsLongInWind) {
-    auto question = lines_of(1.0);
+/// Those lines, of a rotorcraft that takes 24 W at each speed.
+PlanQuestion rotorcraft_lines_of(double km) {
+    auto question = lines_of(km);
     auto text = read_file(question.aircraft.mechanical);
     const std::string drag = "term = \"drag\"\ncoefficient = 0.0095";
     text.replace(text.find(drag), drag.size(), "term = \"constant\"\ncoefficient = 24.0");
@@ -217,6 +217,12 @@ TEST(PlanCheck, OfARotorcraftTakesAsLongInWind) {
     test::write_text(model, text);
     question.aircraft.mechanical = model.string();
     question.aircraft.model = mechanical::read_mechanical_model(model);
+    return question;
+}
+
+/// A rotorcraft's autopilot keeps the speed over ground: a wind above it was "no".
+TEST(PlanCheck, OfARotorcraftTakesAsLongInWind) {
+    auto question = rotorcraft_lines_of(1.0);
     question.plan.airspeed_m_per_s = 12.0;
     const auto calm = check_plan(question);
     question.aircraft.wind = {6.0, 0.0};
@@ -229,6 +235,22 @@ TEST(PlanCheck, OfARotorcraftTakesAsLongInWind) {
     EXPECT_FALSE(stormy.flown);
     EXPECT_FALSE(stormy.length_m);
     EXPECT_THAT(stormy.reason, HasSubstr("26 m/s is beyond what the model's flights flew"));
+}
+
+/// Such a speed was "enough", and the answer with it "perhaps".
+TEST(PlanCheck, IsNotHelpedByASpeedOfUncertainPower) {
+    auto question = rotorcraft_lines_of(6.0);
+    question.aircraft.reserve_soc_percent = 79.0;
+    question.aircraft.wind = {5.0, 0.0};
+    question.plan.airspeed_m_per_s = 11.0;
+    const auto check = check_plan(question);
+    EXPECT_TRUE(check.flown->uncertain.empty());
+    const auto faster = std::ranges::find(check.remedies, "airspeed", &PlanRemedy::kind);
+    ASSERT_NE(faster, check.remedies.end());
+    EXPECT_FALSE(faster->suffices);
+    EXPECT_THAT(faster->text, HasSubstr("(uncertain: "));
+    question.plan.airspeed_m_per_s = faster->value;
+    EXPECT_EQ(check_plan(question).fit, PlanFit::perhaps);
 }
 
 TEST(PlanCheck, OfATimeThatTheSpeedDoesNotGiveIsUncertain) {
