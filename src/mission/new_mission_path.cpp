@@ -112,6 +112,8 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     const auto start = plan.home   ? start_key(*plan.home, of_blocks ? text : "", file.string())
                        : of_blocks ? home_key(text, file.string())
                                    : "";
+    if (plan.terrain && (of_blocks || is_area_text(text)))
+        throw UsageError(fmt::format("{} has no altitudes above the terrain: --terrain has no meaning", file.string()));
     if (is_area_text(text)) {
         if (!of_blocks && has(text, "<LineString"))
             throw InputError({file.string()}, "has a path (LineString) and an area (Polygon)",
@@ -123,8 +125,6 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
     if (plan.spacing_m || plan.overlap_percent || plan.heading_deg)
         throw UsageError(
             fmt::format("{} is no area (GeoJSON, KML): its lines have no spacing and heading to state", file.string()));
-    if (of_blocks && plan.terrain)
-        throw UsageError(fmt::format("{} has no altitudes above the terrain: --terrain has no meaning", file.string()));
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
         const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft, false,

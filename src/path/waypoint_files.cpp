@@ -7,16 +7,21 @@
 #include "path/plans/json_text.h"
 #include "path/plans/kml.h"
 #include "path/plans/mission_files.h"
+#include "path/plans/terrain.h"
 
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::path {
 namespace {
+
+constexpr auto no_terrain = "has no altitudes above the terrain";
+constexpr auto leave_terrain_out = "leave terrain (--terrain) out";
 
 /// Checks and sets a value of a waypoint.
 void set_value(PathEntry& entry, const EntryValue& of, double value, const Location& where) {
@@ -174,6 +179,22 @@ class GeoJsonReader {
     bool is_closed_ = false;  ///< the feature is not flown over
 };
 
+/// Makes altitudes above the ground those above the first place, by the heights of the terrain.
+void follow_terrain(const std::filesystem::path& folder, PlanEntries& plan) {
+    Terrain terrain(folder);
+    const auto home = *plan.entries.front().geographic;
+    for (auto& entry : plan.entries) {
+        entry.is_above_terrain = entry.altitude_m.has_value();
+        if (entry.altitude_m) *entry.altitude_m += terrain.ground_m(*entry.geographic) - terrain.ground_m(home);
+    }
+    auto path = along_terrain(plan.entries, terrain, home);
+    plan.entries = std::move(path.entries);
+    for (const auto& text : path.below_ground) {
+        plan.not_flown.push_back(text);
+        plan.missing.push_back(text);
+    }
+}
+
 }  // namespace
 
 std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::string& file) {
@@ -216,7 +237,7 @@ AreaOutlines geojson_area(std::string_view text, const std::string& file) {
     return std::move(reader.outlines);
 }
 
-PlanEntries parse_kml(std::string_view text, const std::string& file) {
+PlanEntries parse_kml(std::string_view text, const std::string& file, const std::filesystem::path& terrain) {
     constexpr auto hint =
         "expected KML with a path (LineString) or places (Point); a flight plan of Paparazzi is the path's flight_plan "
         "with blocks, a polygon of KML its area";
@@ -255,7 +276,11 @@ PlanEntries parse_kml(std::string_view text, const std::string& file) {
     };
     plan.is_above_home = modes.contains("relativeToGround");
     plan.is_above_sea = modes.contains("absolute");
-    if (plan.is_above_home) report("altitudes above the ground are flown as above that of its start", true);
+    if (!terrain.empty() && !plan.is_above_home) throw InputError({file}, no_terrain, leave_terrain_out);
+    if (plan.is_above_home && terrain.empty())
+        report("altitudes above the ground are flown as above that of its start", true);
+    else if (plan.is_above_home)
+        follow_terrain(terrain, plan);
     if (ignored_m.size() > 1 || ignored_m.count(0.0) != ignored_m.size())
         report("altitudes that its altitudeMode clamps to the ground are not flown", ignored_m.size() > 1);
     return plan;
@@ -268,16 +293,17 @@ PlanEntries read_any_waypoints(const std::filesystem::path& path, const Autopilo
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto text = read_file(path);
     const auto format = plan_format(text);
-    if (!settings.terrain.empty() && format != PlanFormat::qgroundcontrol && format != PlanFormat::ardupilot)
-        throw InputError({path.string()}, "has no altitudes above the terrain", "leave terrain (--terrain) out");
-    if (ending == ".geojson" || ending == ".json") return {parse_geojson(text, path.string())};
+    const bool is_geojson = ending == ".geojson" || ending == ".json";
+    if (!settings.terrain.empty() && (is_geojson || format == PlanFormat::none))
+        throw InputError({path.string()}, no_terrain, leave_terrain_out);
+    if (is_geojson) return {parse_geojson(text, path.string())};
     switch (format) {
         case PlanFormat::qgroundcontrol:
             return parse_qgc_plan(text, path.string(), settings);
         case PlanFormat::ardupilot:
             return parse_wpl(text, path.string(), settings);
         case PlanFormat::flight_plan:
-            return parse_kml(text, path.string());
+            return parse_kml(text, path.string(), settings.terrain);
         default:
             return {parse_waypoint_csv(text, path.string())};
     }

@@ -1,11 +1,15 @@
 #include "path/waypoint_files.h"
 
+#include "base/atomic_file.h"
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 #include "path/plan_blocks.h"
 #include "path/plan_files.h"
 
+#include <filesystem>
 #include <fstream>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -157,6 +161,28 @@ TEST(WaypointFiles, OfKmlHaveTheAltitudesOfItsMode) {
                       "a.kml");
               }).find("give one altitudeMode"),
               std::string::npos);
+}
+
+/// Such a plan with tiles of the terrain was refused.
+TEST(WaypointFiles, OfKmlFollowTheTerrain) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "kml-terrain";
+    std::filesystem::create_directories(folder);
+    constexpr int rows = 121;
+    std::string bytes;  // 1 m of height each 30 seconds of arc to the east
+    for (int i = 0; i < rows * rows; ++i) bytes += {'\0', static_cast<char>(i % rows)};
+    write_file_atomically(folder / "N47E008.hgt", bytes);
+    const auto kml = [&](const char* mode) {
+        return parse_kml(fmt::format("<kml><LineString><altitudeMode>{}</altitudeMode><coordinates>8.25,47.5,50 "
+                                     "8.5,47.5,60</coordinates></LineString></kml>",
+                                     mode),
+                         "a.kml", folder);
+    };
+    const auto plan = kml("relativeToGround");
+    EXPECT_EQ(plan.entries.front().altitude_m, std::optional(50.0));
+    EXPECT_NEAR(*plan.entries.back().altitude_m, 90.0, 1e-6);
+    EXPECT_TRUE(plan.missing.empty());
+    EXPECT_EQ(rejected([&] { kml("absolute"); }),
+              "a.kml: has no altitudes above the terrain; leave terrain (--terrain) out");
 }
 
 constexpr std::string_view flight_plan = R"(<!DOCTYPE flight_plan SYSTEM "flight_plan.dtd">
