@@ -267,6 +267,13 @@ TEST(PlanCheck, OfATimeThatTheSpeedDoesNotGiveIsUncertain) {
     EXPECT_THAT(fast.reason, HasSubstr("600 m in 20 s are 30 m/s over ground"));
 }
 
+/// Tiles of the terrain were ignored with an area, even where there is no such folder.
+TEST(PlanCheck, RefusesTheTerrainOfAnArea) {
+    auto question = question_of(test::source_dir() / "missions" / "synthetic" / "field.geojson");
+    question.plan.terrain = "srtm";
+    EXPECT_THROW(check_plan(question), UsageError);
+}
+
 TEST(PlanCheck, RefusesAPathAndAnAreaInOneFile) {
     const auto file = test::scratch_dir() / "both.kml";
     test::write_text(file, R"(<?xml version="1.0"?><kml><Placemark><LineString><coordinates>1.27,43.46 1.27,43.50

@@ -79,8 +79,10 @@ TEST(PlanBlocks, FlyPatternsWithTheLengthsOfTheirGeometry) {
     EXPECT_NEAR(length_m(R"(<circle wp="1" radius="80" until="NavCircleCount() @GT 2.5"/>)"), 400.0 * pi, 1e-6);
     EXPECT_NEAR(length_m(R"(<circle wp="1" radius="nav_radius" until="stage_time>100"/>)"), 1200.0, 1e-6);
     EXPECT_NEAR(length_m(R"(<oval p1="1" p2="2" radius="-50"/>)"), 600.0 + 100.0 * pi, 1e-6);
-    for (const auto& [until, rounds] :
-         {std::pair{"NavOvalCount() @GT 3", 4.0}, {"nav_oval_count &gt; 0", 1.0}, {"nav_oval_count &gt;= 3", 3.0}})
+    for (const auto& [until, rounds] : {std::pair{"NavOvalCount() @GT 3", 4.0},
+                                        {"nav_oval_count &gt; 0", 1.0},
+                                        {"nav_oval_count &gt;= 3", 3.0},
+                                        {"NavOvalCount() @GEQ 3", 3.0}})
         EXPECT_NEAR(length_m(fmt::format(R"(<oval p1="1" p2="2" radius="50" until="{}"/>)", until)),
                     rounds * (600.0 + 100.0 * pi), 1e-6)
             << until;

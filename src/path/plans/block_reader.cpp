@@ -222,7 +222,9 @@ class BlockReader {
                               time_of_round_s(radius_m, second - *first.place), "the oval");
         const auto until = attribute(stage, "until");  // the counter is a whole number: above 3 are 4 rounds
         if (const auto limit = find_limit(until, {"NavOvalCount", "nav_oval_count"}))
-            count = until.find(">=") == std::string::npos ? std::floor(*limit) + 1.0 : std::max(1.0, std::ceil(*limit));
+            count = until.find(">=") == std::string::npos && until.find("@GEQ") == std::string::npos
+                        ? std::floor(*limit) + 1.0
+                        : std::max(1.0, std::ceil(*limit));
         pattern(stage, first).oval(*first.place, second, radius_m, count);
     }
 

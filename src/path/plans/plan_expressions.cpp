@@ -101,6 +101,7 @@ std::pair<std::string, std::vector<std::string>> function_call(const std::string
 
 std::optional<double> find_limit(const std::string& condition, std::initializer_list<std::string_view> names) {
     auto text = boost::algorithm::replace_all_copy(without_blanks(condition), "@GT", ">");
+    boost::algorithm::replace_all(text, "@GEQ", ">=");
     std::erase_if(text, [](char c) { return c == '(' || c == ')'; });
     const auto above = text.find('>');
     if (above == std::string::npos || std::ranges::find(names, text.substr(0, above)) == names.end())
