@@ -261,14 +261,33 @@ void leave_out_other_batteries(telemetry::MessageTable& battery, std::vector<std
     if (!others.empty()) keep_rows(battery, is_counted);
 }
 
-/// Whether the status of the only battery continues where its own message has ended.
-bool outlasts(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
-    constexpr double ended_s = 10.0;
+/// Whether the log has one battery, whose voltage and current the status states too.
+bool has_its_power(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
     const auto* id = battery.column("id");
     const bool is_one = id == nullptr || std::ranges::count(id->values, id->values.front()) ==
                                              static_cast<std::ptrdiff_t>(id->values.size());
     return is_one && has_values(status, "voltage_battery", unknown_16_bit) &&
-           has_values(status, "current_battery", unknown) && status.time_s.back() > battery.time_s.back() + ended_s;
+           has_values(status, "current_battery", unknown);
+}
+
+/// Whether the status continues where the battery's own message has ended.
+bool outlasts(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
+    constexpr double ended_s = 10.0;
+    return status.time_s.back() > battery.time_s.back() + ended_s;
+}
+
+/// Whether the battery's own message is too rare for the power of a phase, and the status is not.
+bool is_denser(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
+    constexpr double rare_s = 5.0;
+    constexpr std::size_t denser = 4;
+    const auto rows = battery.time_s.size();
+    return status.time_s.back() - status.time_s.front() > rare_s * static_cast<double>(rows) &&
+           status.time_s.size() > denser * rows;
+}
+
+/// Leaves the only battery's temperature; its counters are as rare as its power.
+void leave_temperature(telemetry::MessageTable& battery) {
+    std::erase_if(battery.columns, [](const telemetry::Column& column) { return column.field != "temperature"; });
 }
 
 }  // namespace
@@ -300,13 +319,22 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     if (has_battery && status != tables.end()) complete_cells(*battery, *status, log.facts.notes);
     const auto* id = battery == tables.end() ? nullptr : battery->column("id");
     const bool has_second = id != nullptr && std::ranges::find(id->values, 1.0) != id->values.end();
-    const bool has_ended = has_battery && status != tables.end() && outlasts(*status, *battery);
+    const bool is_replaced = has_battery && status != tables.end() && has_its_power(*status, *battery);
+    const bool is_rare = is_replaced && is_denser(*status, *battery);
+    const bool has_ended = is_replaced && !is_rare && outlasts(*status, *battery);
     if (has_ended)
         log.facts.notes.push_back(fmt::format("BATTERY_STATUS ends {:.0f} s before SYS_STATUS, which is used",
                                               status->time_s.back() - battery->time_s.back()));
+    if (is_rare) {
+        log.facts.notes.push_back(fmt::format("BATTERY_STATUS came {} time{} in {:.0f} s: the power is by SYS_STATUS",
+                                              battery->time_s.size(), battery->time_s.size() == 1 ? "" : "s",
+                                              status->time_s.back() - status->time_s.front()));
+        leave_temperature(*battery);
+    }
     std::erase_if(tables, [&](const telemetry::MessageTable& table) {
-        return table.empty() || (has_battery && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS")) ||
-               (has_second && table.message == "BATTERY2");
+        const bool is_unused =
+            has_battery && !is_rare && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS");
+        return table.empty() || is_unused || (has_second && table.message == "BATTERY2");
     });
     return log;
 }

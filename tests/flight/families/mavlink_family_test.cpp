@@ -187,6 +187,28 @@ TEST(MavlinkFamily, TakesTheStatusThatContinuesWhereTheBatteryHasEnded) {
     EXPECT_NEAR(select_tracks(series).power_w.time_s.back(), 119.0, 1.0);
 }
 
+/// With a battery's message every 45 s, the power was that of it or of the status by turns while the log grew.
+TEST(MavlinkFamily, TakesTheStatusWhereTheBatterysMessageIsRare) {
+    for (const int every_s : {6, 45}) {
+        for (const int end_s : {50, 89, 91, 120}) {
+            test::MavlinkSender vehicle;
+            const auto series = series_of(vehicle, [&](int i) {
+                std::vector<std::string> packets;
+                if (i >= end_s) return packets;
+                for (int k = 0; k < 2; ++k) packets.push_back(vehicle.status(16'000, rising_ca(i)));
+                if (i % every_s == 3) packets.push_back(vehicle.battery({15'000}, rising_ca(i), 10 * i, 0, 2'500));
+                return packets;
+            });
+            const auto data = select_tracks(series);
+            EXPECT_EQ(data.power_w.time_s.size(), static_cast<std::size_t>(end_s));
+            EXPECT_EQ(value_at(data.voltage_v, 40.0), 16.0);
+            EXPECT_EQ(data.battery_temperature_c.value.front(), 25.0);
+            EXPECT_TRUE(data.charge_ah.empty()) << "a rare counter differs from the energy of a phase";
+            EXPECT_THAT(series.notes, testing::Contains(HasSubstr("the power is by SYS_STATUS")));
+        }
+    }
+}
+
 TEST(MavlinkFamily, CompletesThePackOfMoreThanTenCells) {
     const auto voltage_v = [](std::size_t cells, std::uint16_t status_mv, std::size_t notes) {
         test::MavlinkSender vehicle;
