@@ -151,6 +151,10 @@ class MissionFromLink {
             basis.plan = file;
             auto input = cli::read_basis(call_, basis, nullptr);
             cli::note(call_, fmt::format("the mission of aircraft {} is known: its way is predicted", aircraft_));
+            if (!missions_.at(aircraft_).has_home())
+                cli::warn(call_, fmt::format("the home of aircraft {} is unknown: the ways from and to it are not "
+                                             "predicted; --plan states it",
+                                             aircraft_));
             return input;
         } catch (const std::exception& error) {
             cli::warn(call_, fmt::format("the mission of aircraft {} is not used: {}", aircraft_, error.what()));

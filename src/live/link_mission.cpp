@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t max_items = 10'000;
 constexpr double units_per_degree = 1e7;
+constexpr double metre_per_unit = 1e-3;
 constexpr double waypoint_command = 16.0;
 constexpr double frame_above_sea = 0.0;
 constexpr double no_place = std::numeric_limits<std::int32_t>::max();
@@ -28,12 +29,15 @@ bool LinkMission::receive(const IncomingMessage& message) {
     const auto of = [&](const char* field) { return packet->of.at(field); };
     if (name == "HEARTBEAT") {
         constexpr double ardupilot = 3.0;
+        constexpr unsigned armed_flag = 128;
         system_ = packet->system;
         is_ardupilot_ = of("autopilot") == ardupilot;
+        is_disarmed_ = (static_cast<unsigned>(of("base_mode")) & armed_flag) == 0;
     } else if (name == "HOME_POSITION") {
-        constexpr double metre_per_unit = 1e-3;
         home_ = {of("latitude") / units_per_degree, of("longitude") / units_per_degree,
                  of("altitude") * metre_per_unit};
+    } else if (name == "GLOBAL_POSITION_INT" && is_disarmed_ && (of("lat") != 0.0 || of("lon") != 0.0)) {
+        parked_ = {of("lat") / units_per_degree, of("lon") / units_per_degree, of("alt") * metre_per_unit};
     } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
         count_ = static_cast<std::size_t>(of("count"));
         items_.clear();  // those of another mission
@@ -41,21 +45,23 @@ bool LinkMission::receive(const IncomingMessage& message) {
         is_outdated_ = !whole_.empty();
         count_.reset();
         items_.clear();
-    } else if (name == "MISSION_ITEM_INT" && of("seq") < max_items && !(of("mission_type") > 0.0)) {
+    } else if ((name == "MISSION_ITEM_INT" || name == "MISSION_ITEM") && of("seq") < max_items &&
+               !(of("mission_type") > 0.0)) {
         const bool has_place = of("x") != no_place && of("y") != no_place;
+        const double per_degree = name == "MISSION_ITEM" ? 1.0 : units_per_degree;
         Item item{of("frame"),
                   of("command"),
-                  {of("param1"), of("param2"), of("param3"), of("param4"), has_place ? of("x") / units_per_degree : 0.0,
-                   has_place ? of("y") / units_per_degree : 0.0, of("z")}};
+                  {of("param1"), of("param2"), of("param3"), of("param4"), has_place ? of("x") / per_degree : 0.0,
+                   has_place ? of("y") / per_degree : 0.0, of("z")}};
         for (auto& value : item.parameters)
             if (!std::isfinite(value)) value = 0.0;
         items_[static_cast<std::size_t>(of("seq"))] = item;
     }
     if (!is_whole()) return false;
     is_outdated_ = false;
-    if (items_ == whole_ && whole_has_home_ == home_.has_value()) return false;
+    if (items_ == whole_ && whole_has_home_ == has_home()) return false;
     whole_ = items_;
-    whole_has_home_ = home_.has_value();
+    whole_has_home_ = has_home();
     return true;
 }
 
@@ -76,23 +82,29 @@ std::vector<std::string> LinkMission::requests(double now_s) {
     return packets;
 }
 
-/// ArduPilot's first item is its home; other autopilots keep it apart from the items.
+bool LinkMission::has_home() const {
+    return home_ || parked_ || (is_ardupilot_ && !items_.empty() && items_.begin()->second.has_place());
+}
+
+/// ArduPilot's first item is its home, which has no place until it is set; other autopilots keep it apart from the items.
 std::string LinkMission::waypoints() const {
     std::string text = "QGC WPL 110\n";
     const auto add = [&](std::size_t number, const Item& item) {
         text +=
             fmt::format("{}\t0\t{}\t{}\t{}\t1\n", number, item.frame, item.command, fmt::join(item.parameters, "\t"));
     };
+    auto items = whole_;
+    const auto home_at = [](const std::array<double, 3>& at) {
+        return Item{frame_above_sea, waypoint_command, {0.0, 0.0, 0.0, 0.0, at[0], at[1], at[2]}};
+    };
+    const auto home = home_ ? home_ : parked_;
+    if (is_ardupilot_ && home && !items.begin()->second.has_place()) items.begin()->second = home_at(*home);
     if (!is_ardupilot_) {
-        const auto has_place = [](const auto& item) {
-            return item.second.parameters[4] != 0.0 || item.second.parameters[5] != 0.0;
-        };
-        const auto placed = std::ranges::find_if(whole_, has_place);
-        const auto& first = (placed == whole_.end() ? whole_.begin() : placed)->second.parameters;
-        const auto home = home_.value_or(std::array{first[4], first[5], 0.0});
-        add(0, {frame_above_sea, waypoint_command, {0.0, 0.0, 0.0, 0.0, home[0], home[1], home[2]}});
+        const auto placed = std::ranges::find_if(items, [](const auto& of) { return of.second.has_place(); });
+        const auto& first = (placed == items.end() ? items.begin() : placed)->second.parameters;
+        add(0, home_at(home.value_or(std::array{first[4], first[5], 0.0})));
     }
-    for (const auto& [number, item] : whole_) add(number + (is_ardupilot_ ? 0 : 1), item);
+    for (const auto& [number, item] : items) add(number + (is_ardupilot_ ? 0 : 1), item);
     return text;
 }
 

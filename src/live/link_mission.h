@@ -27,6 +27,8 @@ class LinkMission {
     std::vector<std::string> requests(double now_s);
     /// Returns whether another mission was uploaded since, which is not whole yet.
     bool is_outdated() const { return is_outdated_; }
+    /// Returns whether its home is known: by the mission, by the aircraft, or as the place where this was disarmed.
+    bool has_home() const;
     /// Returns the whole mission as a file of waypoints ("QGC WPL 110"), with its home.
     std::string waypoints() const;
 
@@ -35,6 +37,7 @@ class LinkMission {
         double frame = 0.0;
         double command = 0.0;
         std::array<double, 7> parameters = {};  ///< the last three: latitude, longitude, altitude
+        bool has_place() const { return parameters[4] != 0.0 || parameters[5] != 0.0; }
         bool operator==(const Item&) const = default;
     };
 
@@ -43,7 +46,9 @@ class LinkMission {
     telemetry::MavlinkSender sender_;
     double system_ = 0.0;  ///< of the aircraft; 0: not heard yet
     bool is_ardupilot_ = false;
-    std::optional<std::array<double, 3>> home_;  ///< latitude, longitude, altitude above the sea
+    bool is_disarmed_ = false;
+    std::optional<std::array<double, 3>> home_;    ///< latitude, longitude, altitude above the sea
+    std::optional<std::array<double, 3>> parked_;  ///< the same, where it last was disarmed
     std::optional<std::size_t> count_;
     std::map<std::size_t, Item> items_;
     std::map<std::size_t, Item> whole_;  ///< the last whole mission

@@ -91,6 +91,51 @@ TEST(LinkMission, HasTheHomeOfOtherAutopilotsBeforeTheFirstItem) {
     EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t0\t16\t0\t0\t0\t0\t47\t9\t488\t1\n1\t0\t3\t16\t"));
 }
 
+/// GLOBAL_POSITION_INT at 9 degrees east, 488 m above the sea; without a fix at 0.
+std::string position(test::MavlinkSender& vehicle, std::int32_t latitude_1e7) {
+    const std::int32_t longitude_1e7 = latitude_1e7 == 0 ? 0 : 90'000'000;
+    return vehicle.packet(33, little_endian(std::uint32_t{1'000}) + little_endian(latitude_1e7) +
+                                  little_endian(longitude_1e7) + little_endian(std::int32_t{488'000}) +
+                                  std::string(12, '\0'));
+}
+
+/// Read before the home was set, a mission began at its first waypoint, and its return ended there.
+TEST(LinkMission, BeginsWhereTheAircraftStandsUntilItsHomeIsStated) {
+    constexpr std::uint8_t disarmed = 81;
+    for (const std::uint8_t autopilot : {3, 12}) {
+        test::MavlinkSender vehicle;
+        LinkMission mission(245, 191);
+        mission.receive(message_of(vehicle.heartbeat(2, autopilot)));
+        mission.receive(message_of(position(vehicle, 480'000'000)));
+        EXPECT_FALSE(mission.has_home()) << "it is armed: it may fly";
+        mission.receive(message_of(count_of(vehicle, 2)));
+        const auto nowhere =
+            vehicle.packet(73, std::string(30, '\0') + "\x10" + std::string("\0\xF5\xBF\x00\x00\x01", 6));
+        mission.receive(message_of(nowhere));
+        EXPECT_TRUE(mission.receive(message_of(item(vehicle, 1, 47.01, 50.0F))));
+        EXPECT_FALSE(mission.has_home());
+        mission.receive(message_of(vehicle.heartbeat(2, autopilot, disarmed)));
+        EXPECT_FALSE(mission.receive(message_of(position(vehicle, 0)))) << "no fix";
+        EXPECT_TRUE(mission.receive(message_of(position(vehicle, 470'000'000))));
+        EXPECT_TRUE(mission.has_home());
+        EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t0\t16\t0\t0\t0\t0\t47\t9\t488\t1\n"));
+        EXPECT_FALSE(mission.receive(message_of(position(vehicle, 470'000'001)))) << "it is not read again";
+    }
+}
+
+/// Mission Planner reads missions of MAVLink 1 by this message.
+TEST(LinkMission, ReadsItemsInDegrees) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat()));
+    mission.receive(message_of(count_of(vehicle, 1)));
+    const auto packet = vehicle.packet(
+        39, std::string(16, '\0') + little_endian(47.5F) + little_endian(8.25F) + little_endian(30.0F) +
+                std::string(2, '\0') + little_endian(std::uint16_t{16}) + std::string("\xF5\xBF\x03\x00\x01", 5));
+    EXPECT_TRUE(mission.receive(message_of(packet)));
+    EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t3\t16\t0\t0\t0\t0\t47.5\t8.25\t30\t1\n"));
+}
+
 /// A mission that was uploaded later stayed unread.
 TEST(LinkMission, IsReadAgainAfterAnUpload) {
     test::MavlinkSender vehicle;

@@ -43,6 +43,9 @@ constexpr std::array definitions{
     Definition{30, "ATTITUDE", "uint32_t time_boot_ms; float roll, pitch, yaw, rollspeed, pitchspeed, yawspeed"},
     Definition{33, "GLOBAL_POSITION_INT",
                "uint32_t time_boot_ms; int32_t lat, lon, alt, relative_alt; int16_t vx, vy, vz; uint16_t hdg"},
+    Definition{39, "MISSION_ITEM",
+               "float param1, param2, param3, param4, x, y, z; uint16_t seq, command; uint8_t target_system,"
+               " target_component, frame, current, autocontinue; + uint8_t mission_type"},
     Definition{42, "MISSION_CURRENT",
                "uint16_t seq; + uint16_t total; uint8_t mission_state, mission_mode; uint32_t mission_id, fence_id,"
                " rally_points_id"},
