@@ -23,6 +23,13 @@ std::string fitting(const std::string& prefix, const std::string& action) {
     return prefix + action.substr(0, end == std::string::npos ? bytes : end);
 }
 
+/// What an action asks for without its reason and numbers: "Turn home within  min", then "Turn home now".
+std::string request_of(std::string_view action) {
+    std::string request(action.substr(0, action.find(": ")));
+    std::erase_if(request, [](char c) { return c >= '0' && c <= '9'; });
+    return request;
+}
+
 double severity_of(std::string_view grade) {
     constexpr double critical = 2.0;
     constexpr double warning = 4.0;
@@ -58,22 +65,29 @@ void Announcer::add_values(const LiveState& state, double now_s, std::vector<std
         add("fw_resv", units::minute_from_second(*state.battery->time_to_reserve_s));
 }
 
-/// A higher grade is announced at once, any other change after a while, so that one that flickers does not fill a screen.
+/// A higher grade, and what is due now, is announced at once, any other change after a while, so that one that flickers
+/// does not fill a screen.
 void Announcer::add_texts(const LiveState& state, double now_s, std::vector<std::string>& packets) {
     constexpr double min_interval_s = 5.0;
-    const auto announce = [&](const std::string& kind, const std::string& grade, const std::string& text) {
+    constexpr double min_request_interval_s = 10.0;
+    const auto announce = [&](const std::string& kind, const std::string& grade, const std::string& request,
+                              const std::string& text) {
         auto& last = announced_[kind];
-        const bool is_worse = last.grade.empty() || grade == "alarm";
-        if (grade == last.grade || (!is_worse && now_s < last.at_s + min_interval_s)) return;
-        last = {grade, now_s};
+        if (grade == last.grade && request == last.request) return;
+        const bool is_worse =
+            last.grade.empty() || (grade == "alarm" && (last.grade != grade || request.ends_with(" now")));
+        const double interval_s = grade == last.grade ? min_request_interval_s : min_interval_s;
+        if (!is_worse && now_s < last.at_s + interval_s) return;
+        last = {grade, request, now_s};
         packets.push_back(sender_.packet("STATUSTEXT", {{"severity", severity_of(grade)}}, text));
     };
     for (const auto& alarm : state.alarms)
-        announce(alarm.kind, alarm.grade, fitting(fmt::format("FlightWatt {}: ", alarm.grade), alarm.action));
+        announce(alarm.kind, alarm.grade, request_of(alarm.action),
+                 fitting(fmt::format("FlightWatt {}: ", alarm.grade), alarm.action));
     for (const auto& [kind, last] : announced_) {
         const bool is_raised = std::ranges::find(state.alarms, kind, &LiveAlarm::kind) != state.alarms.end();
         if (!is_raised && !last.grade.empty())
-            announce(kind, "", fmt::format("FlightWatt: no {} alarm any more", kind));
+            announce(kind, "", "", fmt::format("FlightWatt: no {} alarm any more", kind));
     }
 }
 

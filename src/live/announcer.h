@@ -12,7 +12,8 @@ namespace flightwatt::live {
 
 /// Puts a prediction into packets of MAVLink for a ground station: a heartbeat of an onboard computer, once a second
 /// `fw_land` (charge at landing, %), `fw_home` (minutes until the turn for home, 0: now) and `fw_resv` (minutes to the
-/// reserve), those that are known and not of a silent link, and a text at each change of an alarm's grade. It never makes a command.
+/// reserve), those that are known and not of a silent link, and a text at each change of an alarm's grade, or of what it
+/// asks for. It never makes a command.
 class Announcer {
   public:
     /// Announces as a component of a system.
@@ -23,8 +24,9 @@ class Announcer {
 
   private:
     struct Announced {
-        std::string grade = {};  ///< of the last text: "caution", "alarm", or empty: none
-        double at_s = 0.0;       ///< its time
+        std::string grade = {};    ///< of the last text: "caution", "alarm", or empty: none
+        std::string request = {};  ///< what it asked for, see request_of()
+        double at_s = 0.0;         ///< its time
     };
 
     void add_values(const LiveState& state, double now_s, std::vector<std::string>& packets);

@@ -86,7 +86,7 @@ bool LinkMission::has_home() const {
     return home_ || parked_ || (is_ardupilot_ && !items_.empty() && items_.begin()->second.has_place());
 }
 
-/// ArduPilot's first item is its home, which has no place until it is set; other autopilots keep it apart from the items.
+/// ArduPilot's first item is its home, which has no place until it is set; others keep it apart from the items.
 std::string LinkMission::waypoints() const {
     std::string text = "QGC WPL 110\n";
     const auto add = [&](std::size_t number, const Item& item) {

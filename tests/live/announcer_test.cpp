@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -75,6 +76,25 @@ TEST(Announcer, SendsEachChangeOfAnAlarmsGrade) {
     state.alarms.clear();
     EXPECT_THAT(announced(announcer, state, 6.0), ElementsAre("HEARTBEAT", "5 FlightWatt: no reserve alarm any more"));
     EXPECT_THAT(announced(announcer, state, 6.5), IsEmpty());
+}
+
+/// An alarm of one grade was announced as "Turn home within 6 min" alone, and "now" never.
+TEST(Announcer, SendsWhatAnAlarmAsksForWhereThatChanges) {
+    Announcer announcer(7, 191);
+    LiveState state;
+    std::vector<std::string> texts;
+    for (int now_s = 0; now_s < 200; ++now_s) {
+        const int left_s = 150 - now_s;
+        const auto request = left_s < 10   ? std::string("now")
+                             : left_s < 60 ? fmt::format("within {} s", left_s)
+                                           : fmt::format("within {} min", left_s / 60);
+        state.alarms = {{"reserve", "alarm", "", "Turn home " + request + ": the reserve will be missed"}};
+        for (const auto& text : announced(announcer, state, now_s))
+            if (text.starts_with("2 ")) texts.push_back(fmt::format("{} {}", now_s, text.substr(2)));
+    }
+    EXPECT_THAT(texts,
+                ElementsAre("0 FlightWatt alarm: Turn home within 2 min", "91 FlightWatt alarm: Turn home within 59 s",
+                            "141 FlightWatt alarm: Turn home now"));
 }
 
 /// "Land now: the reserve will be" was all that fitted.

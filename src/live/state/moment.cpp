@@ -71,10 +71,17 @@ std::string time_text(double time_s) {
                          : fmt::format("{:.0f} min", std::floor(time_s / 60.0));
 }
 
+/// Whether there is time for a cruise, whose latest end is not known before it begins.
+bool has_cruise_ahead(const LiveState& state) {
+    if (state.phase != flight::Phase::takeoff || !state.battery) return false;
+    return state.battery->time_to_reserve_s.value_or(0.0) > state.prediction->landing_s + short_notice_s;
+}
+
 /// "Turn home within 2 min", "Land now", ...
 std::string return_text(const LiveState& state) {
     const auto* way = state.prediction->on_path_s ? "Turn home" : "Land";
     const auto& deadline = state.turn_home;
+    if (!deadline && has_cruise_ahead(state)) return "Shorten the cruise";
     if (!deadline || deadline->latest_in_s.value_or(0.0) < min_time_left_s) return fmt::format("{} now", way);
     if (deadline->path_can_be_flown) return "Shorten the cruise";
     return fmt::format("{} within {}", way, time_text(*deadline->latest_in_s));

@@ -94,6 +94,21 @@ TEST(AlarmsOf, TheActionStatesTheTimeLeft) {
               "23.4 % at landing, reserve 20 %; probability of missing it 97 %");
 }
 
+/// "Land now" was the action from the lift-off of a mission that is too long, with 8 min to the reserve.
+TEST(AlarmsOf, AClimbWithTimeForACruiseNeedsNoLandingNow) {
+    auto state = flying(0.99);
+    state.phase = flight::Phase::takeoff;
+    state.turn_home.reset();
+    state.prediction->on_path_s.reset();
+    state.prediction->landing_s = 40.0;
+    state.battery->time_to_reserve_s = 161.0;
+    EXPECT_EQ(action_of(state), "Shorten the cruise: the reserve will be missed");
+    for (const auto& reserve_in_s : {std::optional(159.0), std::optional<double>()}) {
+        state.battery->time_to_reserve_s = reserve_in_s;
+        EXPECT_EQ(action_of(state), "Land now: the reserve will be missed");
+    }
+}
+
 /// Where the prediction ended, an alarm of over 99 % ended as well, and its end was announced.
 TEST(AlarmsOf, AnAlarmOfTheReserveStaysWhileTheLandingIsUnknown) {
     const auto raised = find_alarms(flying(0.9), input(), {});
