@@ -152,11 +152,14 @@ std::vector<Candidates> parse_single(const FlightFile& file, const AircraftReque
              map ? parse_mapped_csv(file.text(), file.path(), *map) : parse_series_recordings(file.text(), file.path()))
             recordings.push_back({std::move(series)});
     }
+    // Names of several in a .tlog end with their systems' numbers.
+    const bool is_tlog = file.autopilot() == telemetry::AutopilotFormat::tlog;
     for (auto& candidates : recordings) {
         for (const auto& series : candidates) ids.insert(series.aircraft_id);
         std::erase_if(candidates, [&](const FlightSeries& series) {
             return aircraft.name && aircraft.required && !series.aircraft_id.empty() &&
                    series.flight != *aircraft.name &&
+                   !(is_tlog && series.aircraft_name.ends_with(" " + *aircraft.name)) &&
                    named_aircraft(*aircraft.name, {{series.aircraft_id, series.aircraft_name}}).empty();
         });
     }

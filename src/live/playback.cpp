@@ -108,6 +108,20 @@ class Player final : public MessageSink {
     Clock::time_point begin_ = Clock::now();
 };
 
+/// Passes on the messages of one sender.
+class OneSender final : public MessageSink {
+  public:
+    OneSender(MessageSink& sink, const std::string& sender) : sink_(sink), start_(sender + " ") {}
+    void push(IncomingMessage message) override {
+        if (message.text.starts_with(start_)) sink_.push(std::move(message));
+    }
+    void count(std::string_view reason, std::size_t times) override { sink_.count(reason, times); }
+
+  private:
+    MessageSink& sink_;
+    std::string start_;
+};
+
 /// In chunks, so that a stopped player ends soon.
 template <typename Reader>
 void play_bytes(std::string_view bytes, Reader& reader, const Player& player) {
@@ -123,6 +137,13 @@ void play_binary(const telemetry::BinaryLog& log, Player& player) {
                       link_version(log));
     play_bytes(log.bytes, reader, player);
     if (!player.is_stopped()) require_matching_lengths(reader.counts(), log);
+}
+
+/// The number of an aircraft of several in a .tlog, which ends its name: "ArduCopter 2"; empty for the only one.
+std::string system_of(const flight::FlightSeries& series) {
+    const auto& name = series.aircraft_name;
+    const auto number = name.substr(name.rfind(' ') + 1);
+    return parse_unsigned(number) ? number : "";
 }
 
 /// Sends messages as link frames, each in a datagram.
@@ -190,16 +211,19 @@ PlaybackReport play_as_mavlink(const std::filesystem::path& log, const PlaybackO
                                const PlaybackTarget& target, const std::function<bool()>& stop,
                                const std::optional<std::string>& aircraft) {
     const flight::FlightFile file(log);
-    Player player(options, target, stop);
     if (file.autopilot() == telemetry::AutopilotFormat::tlog) {
-        MavlinkReader reader(player, std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()),
-                             true);
+        const auto system = aircraft ? system_of(choose_aircraft(read_candidates(file, aircraft))) : std::string();
+        Player player(options, target, stop);
+        OneSender of_system(player, system);
+        MavlinkReader reader(system.empty() ? static_cast<MessageSink&>(player) : of_system,
+                             std::make_shared<telemetry::MavlinkVehicles>(flight::mavlink_flight_messages()), true);
         play_bytes(file.text(), reader, player);
         return player.end();
     }
     const auto series = choose_aircraft(read_candidates(file, aircraft));
     const auto data = select_tracks(series);
     auto packets = flight_packets(data);
+    Player player(options, target, stop);  // its clock begins
     std::size_t too_high = 0;
     for (std::size_t i = 0; i < data.power_w.time_s.size(); ++i)
         if (data.power_w.value[i] > max_mavlink_current_a * value_at(data.voltage_v, data.power_w.time_s[i]))

@@ -5,6 +5,7 @@
 #include "helpers/binary_frames.h"
 #include "helpers/free_port.h"
 #include "helpers/link_lines.h"
+#include "helpers/mavlink_packets.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 #include "live/received_links.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -127,6 +129,25 @@ TEST(Playback, BeginsLaterAndLosesAndDelaysTheSameMessagesEachTime) {
     Kept again;
     play(log, options, again.target(), never);
     EXPECT_EQ(again.lines, kept.lines);
+}
+
+/// `--aircraft` was ignored: all vehicles were sent.
+TEST(Playback, SendsOneOfTheVehiclesInARecordingOfMavlink) {
+    const auto log = test::scratch_dir() / "two.tlog";
+    write_file_atomically(log, test::tlog_of_flight({1, 1}) + test::tlog_of_flight({2, 1}));
+    const auto sent_of = [&](const std::optional<std::string>& aircraft) {
+        Kept kept;
+        play_as_mavlink(log, {.speed = 1e9}, kept.target(), never, aircraft);
+        std::map<char, std::size_t> sent;
+        for (const auto& line : kept.lines) ++sent[line[line.find(' ') + 1]];
+        return sent;
+    };
+    const auto all = sent_of(std::nullopt);
+    ASSERT_GT(all.at('2'), 6'000U);
+    EXPECT_EQ(all.at('1'), all.at('2'));
+    for (const auto* aircraft : {"2", "ArduCopter 2"})
+        EXPECT_THAT(sent_of(aircraft), ElementsAre(std::pair('2', all.at('2'))));
+    EXPECT_THROW(sent_of("3"), InputError);
 }
 
 TEST(Playback, RefusesTargetsThatAreNone) {

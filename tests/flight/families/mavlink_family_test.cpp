@@ -232,5 +232,19 @@ TEST(MavlinkFamily, AsksWhichOfTwoVehiclesThatFlew) {
     EXPECT_EQ(load_flight(written(log), options).series.aircraft_id, "2");
 }
 
+/// A vehicle with a serial number was found by that and by its name alone.
+TEST(MavlinkFamily, FindsOneOfTwoVehiclesByItsNumberToo) {
+    test::MavlinkSender second{2, 1};
+    const auto version = second.packet(148, std::string(8, '\0') + "ABCDEFGH" + std::string(44, '\0'));
+    const auto log = test::tlog_of_flight({1, 1}) + test::tlog_entry(0.0, version) + test::tlog_of_flight(second);
+    LoadOptions options;
+    for (const auto* name : {"2", "ArduCopter 2", "4847464544434241"}) {
+        options.aircraft = name;
+        EXPECT_EQ(load_flight(written(log), options).series.aircraft_id, "4847464544434241");
+    }
+    options.aircraft = "22";
+    EXPECT_THAT(test::rejected([&] { load_flight(written(log), options); }), HasSubstr("22 sent nothing"));
+}
+
 }  // namespace
 }  // namespace flightwatt::flight
