@@ -7,7 +7,11 @@
 #include "answer/pack_temperature.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/fingerprint.h"
+#include "base/input_file.h"
+#include "base/overwrite_guard.h"
 #include "base/text.h"
+#include "base/toml_reader.h"
 #include "batch/manifest.h"
 #include "battery/battery_toml.h"
 #include "cli/output/aircraft_choice.h"
@@ -52,7 +56,34 @@ struct AnswerArguments {
     cli::SamplingArguments sampling;  ///< of the requirement
     std::optional<std::string> table;
     bool no_page = false;
+    bool again = false;
 };
+
+/// What an answer leaves in its folder for --again, beside the model and the pack.
+struct KeptAnswer {
+    std::string key;  ///< of what it is repeated with, see key_of()
+    std::string aircraft;
+    std::string name;
+    std::size_t logs = 0;
+    std::size_t used = 0;
+    std::optional<double> ground_speed_m_per_s;  ///< mean of the cruises
+    answer::Answered capacity_ah;
+    answer::Answered resistance_ohm;
+    answer::Answered resistance_at_ohm;  ///< at the temperature that was asked for
+};
+
+Fields<KeptAnswer> record_fields(const KeptAnswer*) {
+    using R = KeptAnswer;
+    return {field("key", &R::key),
+            field("aircraft", &R::aircraft),
+            field("name", &R::name),
+            field("logs", &R::logs),
+            field("used", &R::used),
+            field("ground_speed_m_per_s", &R::ground_speed_m_per_s),
+            field("capacity_ah", &R::capacity_ah),
+            field("resistance_ohm", &R::resistance_ohm),
+            field("resistance_at_ohm", &R::resistance_at_ohm)};
+}
 
 /// The call with the folder of one aircraft in place of its logs.
 cli::StageCall folder_call(cli::StageCall call, const std::string& folder) {
@@ -207,6 +238,78 @@ std::string write_page(const cli::StageCall& logs, const AnswerArguments& argume
     }
 }
 
+/// Returns the fingerprint of the logs' names, the pack that is asked for, and the model and the pack in the folder.
+std::string key_of(const cli::StageCall& call, const AnswerArguments& arguments, const std::filesystem::path& folder) {
+    Fingerprint fingerprint;
+    for (const auto& input : call.inputs) fingerprint.add(input + "\n");
+    for (const auto& asked : {arguments.capacity_ah, arguments.temperature_c})
+        fingerprint.add(asked ? fmt::format("{}\n", *asked) : "as flown\n");
+    for (const auto* name : {batch::model_name, answer::pack_name}) fingerprint.add(read_file(folder / name));
+    return fingerprint.hex();
+}
+
+/// Keeps what answer_again() needs.
+void keep_answer(const cli::StageCall& call, const AnswerArguments& arguments, const answer::KnownAircraft& aircraft,
+                 const cli::AircraftAnswer& answer) {
+    const OverwriteExemption own_files;
+    const std::filesystem::path folder = answer.folder;
+    const KeptAnswer kept{key_of(call, arguments, folder),
+                          answer.aircraft,
+                          answer.name,
+                          answer.logs,
+                          answer.used,
+                          mean_ground_speed_m_per_s(aircraft.flights),
+                          answer.pack.capacity_ah,
+                          answer.pack.resistance_ohm,
+                          answer.pack.resistance_at_ohm};
+    Json json;
+    json["format"] = format_version;
+    json.update(record_json(kept));
+    write_file_atomically(folder / answer::kept_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// Answers as modelled, with the model and the pack that the last answer left in the folder; no log is read and no
+/// flight is drawn. Throws InputError where that answer is none of these logs and this pack.
+cli::AircraftAnswer answer_again(const cli::StageCall& call, const AnswerArguments& arguments,
+                                 const std::filesystem::path& folder) {
+    const OverwriteExemption own_files;
+    const std::string hint = "answer without --again first";
+    const auto file = folder / answer::kept_name;
+    if (!std::filesystem::exists(file)) throw InputError({file.string()}, "does not exist: nothing to repeat", hint);
+    KeptAnswer kept;
+    batch::read_batch_json(file, read_file(file), "not an answer of this version", hint,
+                           [&](const Json& json) { read_record(json, kept); });
+    if (kept.key != key_of(call, arguments, folder))
+        throw InputError({file.string()}, "is of other logs, another capacity or temperature, or another model", hint);
+    cli::AircraftAnswer answer;
+    answer.aircraft = kept.aircraft;
+    answer.name = kept.name;
+    answer.folder = folder.string();
+    answer.logs = kept.logs;
+    answer.used = kept.used;
+    answer.question = arguments.question;
+    answer.question.draws_flights = false;
+    answer.pack.capacity_ah = kept.capacity_ah;
+    answer.pack.resistance_ohm = kept.resistance_ohm;
+    answer.pack.resistance_at_ohm = kept.resistance_at_ohm;
+    answer.pack.asked_temperature_c = arguments.temperature_c;
+    answer::KnownAircraft aircraft{mechanical::read_mechanical_model(folder / batch::model_name),
+                                   folder / batch::model_name,
+                                   folder / answer::pack_name,
+                                   {},
+                                   answer.pack};
+    answer::FlightFacts flown;
+    flown.cruise_s = 1.0;
+    flown.ground_speed_m_per_s = kept.ground_speed_m_per_s;
+    aircraft.flights = {flown};
+    answer.endurance = answer_endurance(aircraft, answer.question);
+    answer.failsafe_missing = "--again leaves it out";
+    answer.prediction_error_percent = prediction_error(aircraft.model);
+    write_file_atomically(folder / answer::mission_name,
+                          mission_toml(aircraft, answer.question, answer.endurance.cruise_s));
+    return answer;
+}
+
 /// The flights of one aircraft in a folder of their own, listed.
 struct AircraftFlights {
     std::string aircraft;
@@ -246,6 +349,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
     answer.prediction_error_percent = prediction_error(model);
     const auto mission_file = folder / answer::mission_name;
     write_file_atomically(mission_file, mission_toml(aircraft, arguments.question, answer.endurance.cruise_s));
+    keep_answer(call, arguments, aircraft, answer);
     if (!answer.endurance.power_w.value) {
         answer.failsafe_missing = answer.endurance.power_w.unknown;
         if (arguments.requirement.text) answer.requirement_missed = answer.failsafe_missing;
@@ -338,11 +442,26 @@ Fields<AnswerOutput> record_fields(const AnswerOutput*) {
     return {field("aircraft", &AnswerOutput::aircraft, "answers for each aircraft")};
 }
 
+void print_output(const cli::StageCall& call, const AnswerOutput& output) {
+    if (call.json) {
+        cli::print_json(call, output);
+        return;
+    }
+    std::string text;
+    for (const auto& one : output.aircraft)
+        text += (text.empty() ? "" : "\n") + answer_text(one, cli::terminal_columns(stdout));
+    cli::print(text);
+}
+
 int answer_logs(const cli::StageCall& call, const AnswerArguments& arguments) {
     const auto out = call.output.value_or(answer::default_folder);
     cli::refuse_folder_of_logs(call, out);
     const auto options = cli::batch_options(arguments.batch, out);
     const cli::BatchFolder folder(options.out);
+    if (arguments.again) {
+        print_output(call, {{answer_again(call, arguments, options.out)}});
+        return cli::ok;
+    }
     cli::ProgressBar bar("logs");
     auto flights = read_logs(call, arguments.batch, options,
                              [&](std::size_t done, std::size_t all, const auto&) { bar.show(done, all); });
@@ -350,14 +469,7 @@ int answer_logs(const cli::StageCall& call, const AnswerArguments& arguments) {
     const auto totals = totals_of(flights);
     const AnswerOutput output{answer_all(call, arguments, std::move(flights), options)};
     if (arguments.table) write_file_atomically(*arguments.table, csv_of<cli::AircraftAnswer>(output.aircraft));
-    if (call.json) {
-        cli::print_json(call, output);
-    } else {
-        std::string text;
-        for (const auto& one : output.aircraft)
-            text += (text.empty() ? "" : "\n") + answer_text(one, cli::terminal_columns(stdout));
-        cli::print(text);
-    }
+    print_output(call, output);
     const bool is_answered =
         std::ranges::any_of(output.aircraft, [](const auto& one) { return one.no_answer.empty(); });
     if (!is_answered && totals.accepted > 0) return cli::no_answer;
@@ -416,6 +528,13 @@ the payload, wind and airspeed that are asked for.)"};
     add_require_option(options, arguments.requirement, arguments.sampling);
     options.add("table", arguments.table, cli::output_file("FILE.csv"), "write one row an aircraft to FILE");
     options.add("no-page", arguments.no_page, "write no page");
+    options.add(
+        "again", arguments.again,
+        "as modelled, with the model and the pack of the last answer in the folder of --output, which has to be "
+        "of these logs, capacity and temperature: no log is read and no flight is drawn, and chances, failsafe, "
+        "packs and page are left out",
+        {.excludes = {"home-distance", "require", "table", "each", "packs-file", "pack", "since", "until",
+                      "mix-aircraft", "aircraft", "sortie", "recording", "exclude", "keep", "messages", "simulated"}});
     cli::add_each_option(options, arguments.batch.flights, "answers for each aircraft, in a folder of its own");
     cli::add_pack_options(options, arguments.packs);
     cli::add_filter_options(options, arguments.batch.filter);

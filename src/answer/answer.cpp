@@ -165,7 +165,8 @@ double mean_cruise_power_w(const mission::MissionSetup& mission) {
 }
 
 /// Why no time is known with that probability; empty if it may be.
-std::string no_variability(const KnownAircraft& aircraft) {
+std::string no_variability(const KnownAircraft& aircraft, const Question& question) {
+    if (!question.draws_flights) return "no flights were drawn";
     const auto flights = aircraft.model.flights.size();
     if (flights > 1) return {};
     return "one flight does not show how flights differ; two more would";
@@ -225,7 +226,7 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
             fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
                         *aircraft.pack.asked_temperature_c));
     if (auto note = other_packs_note(aircraft.flights); !note.empty()) endurance.notes.push_back(std::move(note));
-    const auto no_95 = no_variability(aircraft);
+    const auto no_95 = no_variability(aircraft, question);
     endurance.time_s = missing.empty() ? longest(with_cruise_s, other_s, std::nullopt, time_basis) : unknown(missing);
     endurance.time_95_s = !endurance.time_s.value ? unknown(endurance.time_s.unknown)
                           : !no_95.empty()        ? unknown(no_95)

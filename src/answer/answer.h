@@ -24,6 +24,7 @@ namespace flightwatt::answer {
 inline constexpr auto default_folder = "flightwatt-out";
 inline constexpr auto pack_name = "answer-pack.toml";
 inline constexpr auto mission_name = "answer-mission.toml";
+inline constexpr auto kept_name = "answer.json";  ///< what --again repeats
 
 /// What is asked.
 struct Question {
@@ -33,6 +34,7 @@ struct Question {
     std::optional<double> takeoff_mass_kg = {};   ///< of the flights, where a payload's effect must be assumed
     double wind_m_per_s = 0.0;
     std::optional<double> wind_from_deg = {};  ///< absent: not stated
+    bool draws_flights = true;                 ///< for what 95 of 100 flights reach; takes as long as all else
 };
 
 /// What is known of an aircraft from its flights.

@@ -58,6 +58,16 @@ TEST_F(AnswerTest, OneFlightHasNoTimeIn95Of100) {
     EXPECT_EQ(endurance.time_95_s.unknown, "one flight does not show how flights differ; two more would");
 }
 
+TEST_F(AnswerTest, WithoutDrawnFlightsTheTimeIsTheSameAndThatIn95Of100Unknown) {
+    const auto aircraft = aircraft_of(100.0, 5.0);
+    const auto drawn = answer_endurance(aircraft, {});
+    const auto modelled = answer_endurance(aircraft, {.draws_flights = false});
+    EXPECT_EQ(*modelled.time_s.value, *drawn.time_s.value);
+    EXPECT_EQ(*modelled.distance_m.value, *drawn.distance_m.value);
+    EXPECT_EQ(modelled.time_95_s.unknown, "no flights were drawn");
+    EXPECT_GT(*modelled.cruise_s, *drawn.cruise_s) << "half of the flights reach it";
+}
+
 TEST_F(AnswerTest, NoTimeWithoutACapacity) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.pack.capacity_ah = unknown("no label");
