@@ -13,6 +13,7 @@ import { giveNativeEngine } from "./native_engine.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const logs = path.resolve(here, "../../../logs");
+const y6 = path.resolve(here, "../../../../shared/archives/autopilots/ardupilot/y6_2004.bin");
 const program = process.env.FLIGHTWATT && path.resolve(process.env.FLIGHTWATT);
 const page_file = process.env.FLIGHTWATT_PAGE;
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
@@ -130,6 +131,44 @@ test("a slider asks anew, keeps the old answer in sight, and takes it back", { s
     before_move,
     patience,
   );
+});
+
+test("a slider that moves has the time of half of the flights at once, and its chance when it rests", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  const label = (reserve) => `.figures:not(.old) .figure-label:text-is("In the air, until ${reserve} % is left")`;
+  for (const reserve of [30, 35, 40]) {
+    await page.locator('input[aria-label="Reserve"]').fill(String(reserve));
+    await page.waitForSelector(label(reserve), patience);
+  }
+  assert.match(await page.textContent("h1"), /in half of the flights$/);
+  const half = await page.textContent(".figures .figure-value");
+  await page.waitForSelector(".figures .ok", patience);
+  assert.equal(await page.locator(label(40)).count(), 1);
+  assert.match(await page.textContent("h1"), /in 95 of 100 flights$/);
+  assert.ok((await page.textContent(".figures .soft")).endsWith(half), "the whole answer has the same time");
+});
+
+test("the capacity of the logs is taken back, and a move of its slider does not move its ends", {
+  skip: skip || !existsSync(y6),
+  ...patience,
+}, async (t) => {
+  const page = await open(t);
+  await choose(page, [y6]);
+  await page.waitForSelector(".log.used", patience);
+  await page.click('nav a[href="#answer"]');
+  await page.waitForSelector(".figures .figure-value b", patience);
+  const before = await page.textContent(".figures .figure-value");
+  const slider = page.locator('input[aria-label="Pack capacity"]');
+  const ends = async () => [await slider.getAttribute("min"), await slider.getAttribute("max")];
+  const ends_before = await ends();
+  await slider.fill("4.5");
+  await page.waitForSelector(".figures .change.less", patience);
+  assert.deepEqual(await ends(), ends_before);
+  await page.click("text=As measured");
+  await page.waitForFunction((text) => document.querySelector(".figures .figure-value")?.textContent === text, before, patience);
+  assert.doesNotMatch(await page.textContent(".command code"), /--capacity/);
 });
 
 test("a refused question greys the old answer beside its error, and the sliders take it back", { skip, ...patience }, async (t) => {

@@ -39,15 +39,18 @@ interface FiguresProps {
   now: Answered;
   measured?: Answered;
   asking: boolean;
+  /// Whether they are as modelled alone, while a slider moves.
+  is_moving?: boolean;
   /// Whether they answer another question than that of now.
   is_old: boolean;
 }
 
-export function Figures({ now, measured, asking, is_old }: FiguresProps) {
+export function Figures({ now, measured, asking, is_moving, is_old }: FiguresProps) {
   const { answer } = now;
   const time = mainTime(answer);
   const is_chance = answer.time_in_air_95_s.value != null;
   const before = measured && now !== measured ? measured.answer : undefined;
+  const time_before = is_chance ? before && mainTime(before) : before?.time_in_air_s;
   const speed = answer.airspeed_m_per_s.value;
   return (
     <section class={`card figures${is_old ? " old" : ""}`} aria-label="Time and distance" aria-busy={asking}>
@@ -59,8 +62,9 @@ export function Figures({ now, measured, asking, is_old }: FiguresProps) {
         <p class="figure-note">
           {is_chance
             ? <b class={contradictsFlights(answer) ? "" : "ok"}>in 95 of 100 flights</b>
+            : is_moving ? <><b>half of the flights</b>; 95 of 100: computing</>
             : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
-          <Change text={changeOf(time.value, before && mainTime(before).value, duration)} />
+          <Change text={changeOf(time.value, time_before?.value, duration)} />
         </p>
         {is_chance && <p class="soft">half of the flights: {duration(answer.time_in_air_s.value)}</p>}
       </Figure>
@@ -72,7 +76,7 @@ export function Figures({ now, measured, asking, is_old }: FiguresProps) {
       >
         <p class="figure-note">
           {answer.distance_m.value != null
-            ? <>{is_chance ? <b>half of the flights</b> : "as modelled"}, out and back</>
+            ? <>{is_chance || is_moving ? <b>half of the flights</b> : "as modelled"}, out and back</>
             : inPageWords(answer.distance_m.unknown)}
           <Change text={changeOf(answer.distance_m.value, before?.distance_m.value, distance)} />
         </p>
@@ -341,12 +345,12 @@ function PackHealth({ answer }: { answer: Answer }) {
   );
 }
 
-function headline({ answer, question }: Answered): string {
+function headline({ answer, question }: Answered, is_moving: boolean): string {
   const time = mainTime(answer);
   if (time.value == null) return answer.power_w.value != null
     ? `It draws ${quantity(answer.power_w.value, answer.power_w.value < 100 ? 1 : 0, "W")}; how long is not known yet`
     : "How long it flies is not known yet";
-  const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : "";
+  const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : is_moving ? " in half of the flights" : "";
   const asked = asWords(question);
   const begin = asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A";
   return `${begin} full pack lasts ${duration(time.value)}${chance}`;
@@ -390,7 +394,7 @@ function CapacityAsked({ aircraft, project }: { aircraft: Aircraft; project: Pro
 
 export function AnswerScreen({ project, aircraft }: { project: Project; aircraft?: Aircraft }) {
   if (!aircraft) return <NoLogs />;
-  const { now, measured } = aircraft;
+  const { now, measured, moving } = aircraft;
   if (!now)
     return aircraft.failed ? (
       <>
@@ -405,7 +409,8 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
     );
   const is_old = project.isOld(aircraft.id);
   const asking = is_old && !aircraft.failed;
-  const { answer } = now;
+  const shown = moving ?? now;
+  const { answer } = shown;
   const command = ["flightwatt", project.inputsShown(aircraft.logs, aircraft), ...optionsOf(aircraft.question).map(quoted)].join(" ");
   return (
     <>
@@ -416,7 +421,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
             {answer.packs[0]?.cells ? ` · ${answer.packs[0].cells} cells` : ""}
             {answer.capacity_ah.value != null ? ` · ${quantity(answer.capacity_ah.value, 1, "Ah")}` : ""}
           </p>
-          <h1 class={is_old ? "old" : ""} aria-live="polite">{headline(now)}</h1>
+          <h1 class={is_old && !moving ? "old" : ""} aria-live="polite">{headline(shown, moving != null)}</h1>
         </div>
       </header>
       {aircraft.failed && <Card class="failed"><Verdict grade="bad">{inPageWords(aircraft.failed)}</Verdict></Card>}
@@ -425,8 +430,8 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
       <div class="answer">
         <WhatIf project={project} aircraft={aircraft} asking={asking} />
         <div class="answer-middle">
-          <Figures now={now} measured={measured} asking={asking} is_old={is_old} />
-          <ChargeCard now={now} measured={measured} />
+          <Figures now={shown} measured={measured} asking={asking} is_moving={moving != null} is_old={is_old && !moving} />
+          <ChargeCard now={shown} measured={measured} />
           <div class="pair">
             <RestsOn answer={answer} />
             <PredictedCard project={project} aircraft={aircraft} answered={now} />

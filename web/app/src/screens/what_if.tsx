@@ -1,9 +1,10 @@
 // The sliders: each changes one option of `flightwatt answer`.
+import { useRef } from "preact/hooks";
 import { duration, distance, quantity } from "../ui/format";
 import { NumberField } from "../ui/basics";
 import { Slider } from "../ui/slider";
 import type { Aircraft, Answered, Project } from "../work/project";
-import { isMeasured } from "../work/project";
+import { baseOf, isMeasured } from "../work/project";
 import type { Question } from "../work/question";
 import { basisOf, changeOf, mainTime } from "./answer";
 
@@ -20,11 +21,10 @@ interface SliderOf {
   base_words: string;
 }
 
-function slidersOf(measured: Answered, question: Question): SliderOf[] {
+/// `middle_ah` is in the middle of the capacities.
+function slidersOf(measured: Answered, { question, own_capacity_ah: own_ah }: Aircraft, middle_ah: number): SliderOf[] {
   const { answer } = measured;
   const speed = answer.airspeed_m_per_s.value;
-  const capacity = answer.capacity_ah.value ?? 5;
-  const most = Math.ceil(2 * capacity);
   return [
     {
       name: "reserve",
@@ -77,9 +77,9 @@ function slidersOf(measured: Answered, question: Question): SliderOf[] {
       unit: "Ah",
       decimals: 1,
       basis: question.capacity_ah != null ? "assumption" : basisOf(answer.capacity_ah.basis),
-      range: [0.1 * Math.ceil(2.5 * capacity), most, 0.1],
+      range: [0.1 * Math.ceil(2.5 * middle_ah), Math.ceil(2 * middle_ah), 0.1],
       base: question.capacity_ah == null ? answer.capacity_ah.value : null,
-      base_words: answer.capacity_ah.value != null ? quantity(answer.capacity_ah.value, 1, "Ah") : "unknown",
+      base_words: own_ah == null && answer.capacity_ah.value == null ? "unknown" : quantity(own_ah ?? answer.capacity_ah.value, 1, "Ah"),
     },
     {
       name: "temperature",
@@ -115,10 +115,22 @@ function hintOf(aircraft: Aircraft, slider: SliderOf): string {
     : "";
 }
 
+/// Returns the capacity that the slider has in its middle, which a move of it does not change.
+function useMiddle(capacity_ah: number | null): number {
+  const middle = useRef(capacity_ah);
+  const { current } = middle;
+  if (capacity_ah != null && (current == null || capacity_ah < 0.25 * current || capacity_ah > 2 * current))
+    middle.current = capacity_ah;
+  return middle.current ?? 5;
+}
+
 export function WhatIf({ project, aircraft, asking }: { project: Project; aircraft: Aircraft; asking: boolean }) {
   const { question, now } = aircraft;
   const measured = aircraft.measured ?? now;
-  if (!measured || !now) return null;
+  const shown = aircraft.moving ?? now;
+  const middle_ah = useMiddle(question.capacity_ah ?? measured?.answer.capacity_ah.value ?? null);
+  if (!measured || !shown) return null;
+  const base = baseOf(aircraft);
   const set = (key: keyof Question, value: number | undefined) => project.ask(
     aircraft.id,
     { ...question, [key]: value },
@@ -127,25 +139,22 @@ export function WhatIf({ project, aircraft, asking }: { project: Project; aircra
     <section class="card what-if" aria-label="What if">
       <header class="card-head">
         <h2>What if</h2>
-        <button type="button" class="quiet" disabled={isMeasured(question)}
-          onClick={() => project.ask(
-            aircraft.id,
-            question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {},
-          )}>
+        <button type="button" class="quiet" disabled={isMeasured(question) && question.capacity_ah === base.capacity_ah}
+          onClick={() => project.ask(aircraft.id, base)}>
           As measured
         </button>
       </header>
       <p class="what-if-result" aria-hidden="true">
-        <b>{duration(mainTime(now.answer).value)}</b> {now.answer.distance_m.value != null && <b>
+        <b>{duration(mainTime(shown.answer).value)}</b> {shown.answer.distance_m.value != null && <b>
           ·{" "}
-          {distance(now.answer.distance_m.value)}
+          {distance(shown.answer.distance_m.value)}
         </b>}{" "}
-        <span class="soft">{asking ? "computing" : now.answer.time_in_air_95_s.value != null ? "95 of 100" : ""}</span>
+        <span class="soft">{asking ? "computing" : shown.answer.time_in_air_95_s.value != null ? "95 of 100" : ""}</span>
       </p>
-      {slidersOf(measured, question).map((slider) => {
+      {slidersOf(measured, aircraft, middle_ah).map((slider) => {
         const asked = question[slider.key];
         const value = asked ?? restOf(slider, measured);
-        const changed = asked != null && slider.name !== "capacity";
+        const changed = asked != null && (slider.name !== "capacity" || asked !== base.capacity_ah);
         return (
           <Slider key={slider.name} label={slider.label} basis={slider.basis} changed={changed} value={value}
             min={slider.range[0]} max={slider.range[1]} step={slider.range[2]}

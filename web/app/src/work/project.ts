@@ -5,7 +5,7 @@ import { naturally } from "../ui/format";
 import { aircraftOf, linesOf, type BatchFound } from "./batch_lines";
 import { numbers, parseCsv, track, type Csv } from "./csv";
 import { curveOf } from "./curve";
-import type { Answer, Batch, FlownFlight, LogRecord, Manifest, Simulation } from "./documents";
+import type { Answer, Batch, FlownFlight, Known, LogRecord, Manifest, Simulation } from "./documents";
 import { freePath, kindOf, safePath, tileName, type Dropped } from "./files";
 import * as storage from "./keep";
 import { inputsShown, isByFolder, optionsOf, type Question } from "./question";
@@ -24,6 +24,8 @@ const out_folder = "out";
 const settings_name = "settings.json";
 /// Answers quicker than this leave time for those of the sliders' steps.
 const quick_s = 0.5;
+/// A slider that has not moved for so long is asked the whole question.
+const rest_ms = 200;
 const kept_files = /\.(json|toml|csv)$/;
 
 const decoder = new TextDecoder();
@@ -67,7 +69,10 @@ export class Project {
   private wanted = new Map<string, Question>();
   /// The question whose pack and mission are in an aircraft's folder.
   private written = new Map<string, string>();
-  private settings: { chosen?: string; questions?: Record<string, Question> } = {};
+  /// The pack that is asked for in the last whole answer in an aircraft's folder, which `answer --again` repeats.
+  private packs = new Map<string, string>();
+  private resting: ReturnType<typeof setTimeout> | undefined;
+  private settings: { chosen?: string; questions?: Record<string, Question>; capacities_ah?: Record<string, number> } = {};
 
   constructor(readonly engine: Engine) {}
 
@@ -206,6 +211,7 @@ export class Project {
   }
 
   cancel() {
+    clearTimeout(this.resting);
     this.queue.clear();
     this.wanted.clear();
     this.engine.cancel();
@@ -306,7 +312,8 @@ export class Project {
     const lines = linesOf(found, waiting);
     const questionOf = (id: string) =>
       this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
-    const aircraft = aircraftOf(found, lines, questionOf);
+    const aircraft = aircraftOf(found, lines, questionOf)
+      .map((one) => ({ ...one, own_capacity_ah: this.settings.capacities_ah?.[one.id] }));
     const unused = lines.filter(({ line }) => line.state === "not").map(({ line }) => line);
     this.set({ unused, aircraft });
     if (aircraft.some((one) => one.id === this.state.chosen)) return;
@@ -347,11 +354,19 @@ export class Project {
 
   // --- answers
 
-  /// Asks; while an answer is under way, the latest question alone is next.
+  /// Asks; while an answer is under way, the latest question alone is next. A slider that moves gets the answer as
+  /// modelled at once, and the whole one when it rests.
   ask(id: string, question: Question) {
+    clearTimeout(this.resting);
     this.setAircraft(id, { question, failed: undefined });
     this.settings.questions = { ...this.settings.questions, [id]: question };
     this.keepSettings();
+    const measured = this.state.aircraft.find((one) => one.id === id)?.measured;
+    if (measured && isSame(measured.question, question)) {
+      this.wanted.delete(id);
+      this.setAircraft(id, { now: measured, moving: undefined });
+      return;
+    }
     const is_waiting = this.wanted.has(id);
     this.wanted.set(id, question);
     this.set({ busy: true });
@@ -359,15 +374,49 @@ export class Project {
     this.queue.add(async () => {
       const latest = this.wanted.get(id);
       this.wanted.delete(id);
-      if (latest) await this.answer(id, latest);
+      if (!latest) return;
+      if (await this.again(id, latest)) {
+        if (!this.wanted.has(id)) this.resting = setTimeout(() => this.queue.addNext(() => this.settle(id)), rest_ms);
+        return;
+      }
+      this.setAircraft(id, { moving: undefined });
+      await this.answer(id, latest);
     }, true);
+  }
+
+  /// Answers the question of now, unless it is answered; another move of a slider interrupts this.
+  private async settle(id: string) {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    if (aircraft && this.isOld(id) && !aircraft.failed) await this.answer(id, aircraft.question);
+  }
+
+  /// Answers as modelled, with the model and the pack of the last answer; returns whether it can.
+  private async again(id: string, question: Question): Promise<boolean> {
+    const aircraft = this.state.aircraft.find((one) => one.id === id);
+    const now = aircraft?.now;
+    if (!aircraft || !now?.curve || this.packs.get(id) !== packOf(question) || now.question.home_m !== question.home_m)
+      return false;
+    const started = performance.now();
+    this.written.delete(id);
+    const args = this.answerArguments(aircraft, { ...question, home_m: undefined });
+    const result = await this.engine.run([...args, "--again"]);
+    const found = result.code === 0 ? (JSON.parse(result.out) as { aircraft: Answer[] }).aircraft[0] : undefined;
+    if (found?.time_in_air_s.value == null) return false;
+    if (!this.isOld(id)) return true;
+    const seconds = (performance.now() - started) / 1000;
+    const moving = { ...now, question, answer: asModelled(now.answer, found), seconds };
+    const curve = (this.state.aircraft.find((one) => one.id === id)?.moving ?? now).curve;
+    this.setAircraft(id, { moving: { ...moving, curve } });
+    const flown = await this.curve(missionOf(aircraft), 0);
+    if (this.isOld(id)) this.setAircraft(id, { moving: { ...moving, curve: flown } });
+    return true;
   }
 
   /// Whether the answer that is known is one to another question: that of now is computed, or was refused.
   isOld(id: string): boolean {
     const aircraft = this.state.aircraft.find((one) => one.id === id);
     if (!aircraft) return false;
-    return JSON.stringify(aircraft.question) !== JSON.stringify(aircraft.now?.question);
+    return !aircraft.now || !isSame(aircraft.question, aircraft.now.question);
   }
 
   answerArguments(aircraft: Aircraft, question: Question): string[] {
@@ -387,23 +436,32 @@ export class Project {
   private async answer(id: string, question: Question) {
     const aircraft = this.state.aircraft.find((one) => one.id === id);
     if (!aircraft) return;
-    const is_base = isMeasured(question);
-    const base = aircraft.measured?.question;
-    if (!is_base && (!base || base.capacity_ah !== question.capacity_ah)) {
-      const measured = await this.answered(
-        aircraft,
-        question.capacity_ah != null ? { capacity_ah: question.capacity_ah } : {},
-      );
+    const base = baseOf(aircraft);
+    const is_base = isMeasured(question) && question.capacity_ah === base.capacity_ah;
+    if (!is_base && (!aircraft.measured || aircraft.measured.question.capacity_ah !== base.capacity_ah)) {
+      const measured = await this.answered(aircraft, base);
       // Where it is refused the old one stays, whose sliders take that back.
       if (typeof measured !== "string") this.setAircraft(id, { measured, hints: {} });
     }
     const now = await this.answered(aircraft, question);
-    if (typeof now === "string") this.setAircraft(id, { failed: now });
+    const asked = this.state.aircraft.find((one) => one.id === id)?.question;
+    if (asked && !isSame(asked, question) && !this.isOld(id)) return;
+    if (typeof now !== "string" && question.capacity_ah == null) this.keepCapacity(id, now.answer.capacity_ah);
+    if (typeof now === "string") this.setAircraft(id, { failed: now, moving: undefined });
     else this.setAircraft(
       id,
-      is_base ? { measured: now, now, failed: undefined, hints: {} } : { now, failed: undefined },
+      { now, failed: undefined, moving: undefined, ...(is_base ? { measured: now, hints: {} } : {}) },
     );
     if (is_base && typeof now !== "string" && now.seconds < quick_s) this.queue.add(() => this.hints(id), false);
+  }
+
+  /// Keeps the capacity that the logs of an aircraft state; where they state none, its user alone knows it.
+  private keepCapacity(id: string, { value, basis }: Known) {
+    const { [id]: _, ...others } = this.settings.capacities_ah ?? {};
+    const own_ah = value != null && !/^(estimat|assum)/.test(basis) ? value : undefined;
+    this.settings.capacities_ah = own_ah != null ? { ...others, [id]: own_ah } : others;
+    this.keepSettings();
+    this.setAircraft(id, { own_capacity_ah: own_ah });
   }
 
   /// Answers for a step of each slider, one after the other, while nobody waits.
@@ -412,7 +470,11 @@ export class Project {
     const measured = aircraft?.measured;
     if (!aircraft || !measured) return;
     const [name, step] = stepsFrom(measured).find(([one]) => !(one in aircraft.hints)) ?? [];
-    if (!name || !step) return;
+    if (!name || !step) {
+      // The steps had other packs than what a slider repeats.
+      if (aircraft.now && this.packs.get(id) !== packOf(aircraft.now.question)) await this.answered(aircraft, aircraft.now.question);
+      return;
+    }
     const found = await this.answered(aircraft, { ...measured.question, ...step });
     const now = this.state.aircraft.find((one) => one.id === id);
     if (now?.measured !== measured) return;
@@ -441,24 +503,25 @@ export class Project {
     this.written.delete(aircraft.id);
     const result = await this.engine.run(this.answerArguments(aircraft, question));
     this.written.set(aircraft.id, JSON.stringify(question));
+    if (result.code === 0) this.packs.set(aircraft.id, packOf(question));
     if (!result.out) return errorsOf(result);
     const answer = (JSON.parse(result.out) as { aircraft: Answer[] }).aircraft[0];
     if (!answer) return errorsOf(result);
     if (answer.no_answer) return answer.no_answer;
     const curve = answer.time_in_air_s.value != null
-      ? await this.curve(`${aircraft.folder}/answer-mission.toml`)
+      ? await this.curve(missionOf(aircraft))
       : null;
     const seconds = (performance.now() - started) / 1000;
     return { question, answer, curve, seconds, warnings: printed(result, "warning") };
   }
 
-  /// Returns the charge over a mission, with a band where flights differ.
-  async curve(mission: string): Promise<Curve | null> {
-    const found = await this.curveOrError(mission);
+  /// Returns the charge over a mission, with a band where flights differ; without samples no flights are drawn.
+  private async curve(mission: string, samples?: number): Promise<Curve | null> {
+    const found = await this.curveOrError(mission, samples);
     return typeof found === "string" ? null : found;
   }
 
-  /// The same, or why there is none; without samples no flights are drawn.
+  /// The same, or why there is none.
   async curveOrError(mission: string, samples = 400): Promise<Curve | string> {
     const [csv, band] = ["curve.csv", "band.csv"];
     const simulate = ["simulate", mission, "--json", "--quiet", "--step", "2", "-o", csv];
@@ -481,6 +544,19 @@ export class Project {
   }
 }
 
+const missionOf = ({ folder }: Aircraft) => `${folder}/answer-mission.toml`;
+
+const isSame = (one: Question, other: Question) => JSON.stringify(one) === JSON.stringify(other);
+
+/// Returns which pack is asked for.
+const packOf = ({ capacity_ah, temperature }: Question) => JSON.stringify([capacity_ah, temperature]);
+
+/// Returns an answer as modelled, with the pack and what else of the whole one it was made with.
+function asModelled(whole: Answer, modelled: Answer): Answer {
+  const { reserve_soc_percent, is_hover, power_w, time_in_air_s, time_in_air_95_s, airspeed_m_per_s, distance_m, distance_across_m, notes } = modelled;
+  return { ...whole, reserve_soc_percent, is_hover, power_w, time_in_air_s, time_in_air_95_s, airspeed_m_per_s, distance_m, distance_across_m, notes };
+}
+
 /// Returns a step of each slider from an answer.
 function stepsFrom({ answer }: Answered): [string, Question][] {
   const capacity = answer.capacity_ah.value;
@@ -501,6 +577,11 @@ async function missionsAmong(files: Dropped[]): Promise<Set<string>> {
   for (const { path, file } of files)
     if (/\.toml$/i.test(path) && /^\s*mechanical\s*=/m.test(await file.slice(0, 20_000).text())) found.add(path);
   return found;
+}
+
+/// Returns what "as measured" asks: no capacity where the logs state one; else that of now, which its user alone knows.
+export function baseOf({ question: { capacity_ah }, own_capacity_ah }: Aircraft): Question {
+  return own_capacity_ah != null || capacity_ah == null ? {} : { capacity_ah };
 }
 
 /// Returns whether a question changes nothing but the capacity.

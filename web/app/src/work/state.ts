@@ -44,9 +44,13 @@ export interface Aircraft {
   folder: string;
   logs: LogLine[];
   question: Question;
-  /// Without what-if: the capacity alone may be stated.
+  /// The capacity that its logs state.
+  own_capacity_ah?: number;
+  /// Without what-if, see baseOf().
   measured?: Answered;
   now?: Answered;
+  /// To a question of a slider that moves: as modelled, without chances; gone once `now` answers it.
+  moving?: Answered;
   failed?: string;
   /// What a step of a slider changes.
   hints: Record<string, Answered | null>;
