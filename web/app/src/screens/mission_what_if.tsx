@@ -7,7 +7,7 @@ import { chance, duration, quantity } from "../ui/format";
 import { Slider } from "../ui/slider";
 import type { Simulation } from "../work/documents";
 import { useLatest } from "../work/latest";
-import { changedMission, commandOf, fileName, flyAgain } from "../work/mission_again";
+import { changedMission, commandOf, fileName, flyAgain, samplesOf } from "../work/mission_again";
 import type { Changes } from "../work/mission_text";
 import type { Curve } from "../work/project";
 import { ChargePlot } from "./answer";
@@ -85,7 +85,12 @@ function Sliders({ sliders, changes, change }: { sliders: MissionSlider[]; chang
 export function MissionWhatIf({ mission, of, files }: { mission: MissionDocument; of: MissionAgain; files: ReportDocument["files"] }) {
   const [changes, setChanges] = useState<Changes>({});
   const asked = Object.keys(changes).length > 0 ? changes : null;
-  const { found, failed, asking } = useLatest(asked, (latest) => flyAgain(files, mission, of, latest), [changes]);
+  const { found, failed, asking } = useLatest(
+    asked,
+    (latest) => flyAgain(files, of, latest, 0),
+    [changes],
+    (latest) => (samplesOf(mission) > 0 ? flyAgain(files, of, latest, samplesOf(mission)) : null),
+  );
   return (
     <section class="mission-what-if" aria-label="What if">
       <header class="card-head">

@@ -22,7 +22,7 @@ const no_plan: PlanOptions = { plan: "FILE", blocks: [], packs: 1 };
 const drawn_area = "plans/drawn area.geojson";
 
 /// Why a plan that keeps its reserve as modelled may not keep it; nothing where none of that is the case.
-function doubtsOf(simulation: Simulation, kept: number | null): string[] {
+function doubtsOf(simulation: Simulation, kept: number | null, awaits_chance: boolean): string[] {
   const by_flights = [simulation, ...(simulation.flights ?? [])]
     .find((one) => one.with_capacity_of_flights?.keeps_reserve === false)?.with_capacity_of_flights;
   return [
@@ -30,14 +30,14 @@ function doubtsOf(simulation: Simulation, kept: number | null): string[] {
     ...(by_flights ? [`with ${quantity(by_flights.capacity_ah, 1, "Ah")}, which the flights indicate, it misses the reserve`] : []),
     ...(kept != null
       ? []
-      : [simulation.packs
+      : [awaits_chance ? "that is as modelled: its chance is computed next" : simulation.packs
         ? "that is as modelled: each flight lands with less in about half of the flights"
         : "nothing shows how the power of flights differs: its chance is unknown"]),
   ];
 }
 
 /// What a simulated plan comes to, in words; it fits where 95 of 100 flights keep the reserve, as in `check`.
-export function verdictOf({ simulation, time_s, soc }: Curve): {
+export function verdictOf({ simulation, time_s, soc }: Curve, awaits_chance = false): {
   grade: Grade;
   title: string;
   detail: string;
@@ -53,7 +53,7 @@ export function verdictOf({ simulation, time_s, soc }: Curve): {
   const lands =
     `Lands with ${number(simulation.final_soc_percent, 1)} % of its charge after ${duration(simulation.duration_s)}.`;
   const words = kept != null ? chance(kept) : "";
-  const doubts = doubtsOf(simulation, kept);
+  const doubts = doubtsOf(simulation, kept, awaits_chance);
   const doubt = doubts.length > 0 ? `${lands.slice(0, -1)}, but ${doubts.join("; ")}.` : lands;
   if (!simulation.keeps_reserve) {
     const where = below >= 0 && time_s[below] != null
@@ -81,12 +81,12 @@ export function verdictOf({ simulation, time_s, soc }: Curve): {
   return { grade: "good", title: `Fits ${packs}`, detail: lands, chance: words };
 }
 
-function Band({ curve, asking }: { curve: Curve; asking: boolean }) {
-  const verdict = verdictOf(curve);
+function Band({ flown: { curve, awaits_chance }, asking }: { flown: FlownPlan; asking: boolean }) {
+  const verdict = verdictOf(curve, awaits_chance);
   const [figure, ...rest] = verdict.chance.split(" of ");
   return (
     <section
-      class={`verdict-band ${verdict.grade}${asking ? " old" : ""}`}
+      class={`verdict-band ${verdict.grade}${asking && !awaits_chance ? " old" : ""}`}
       aria-label="Verdict"
       aria-live="polite"
       aria-busy={asking}
@@ -204,7 +204,7 @@ function useHelp(project: Project, aircraft: Aircraft, answered: Answered | unde
   const [help, setHelp] = useState<Help[]>([]);
   useEffect(() => {
     setHelp([]);
-    if (!answered || !flown || verdictOf(flown.curve).grade === "good" || /\.toml$/i.test(flown.options.plan)) return;
+    if (!answered || !flown || flown.awaits_chance || verdictOf(flown.curve).grade === "good" || /\.toml$/i.test(flown.options.plan)) return;
     let is_wanted = true;
     const { options, curve } = flown;
     const add = (more: Help[]) => is_wanted && setHelp((before) => [...before, ...more]);
@@ -542,8 +542,9 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
   const answered = aircraft?.now;
   const { found: flown, failed, asking } = useLatest(
     options,
-    async (latest) => (aircraft && answered ? flyPlan(project, aircraft, answered, { ...latest, terrain }) : ""),
+    async (latest) => (aircraft && answered ? flyPlan(project, aircraft, answered, { ...latest, terrain }, false) : ""),
     [options, answered, terrain],
+    (latest, { awaits_chance }) => (aircraft && answered && awaits_chance ? flyPlan(project, aircraft, answered, { ...latest, terrain }) : null),
   );
   const places = useFlownPlaces(project, aircraft);
   const shape = useShape(project, options?.plan ?? "", state.dropped);
@@ -567,7 +568,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             : "Does a plan fit?"}
       </h1>}
       {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
-      {shown && <Band curve={shown.curve} asking={asking} />}
+      {shown && <Band flown={shown} asking={asking} />}
       <div class={`plan${options || drawing ? "" : " alone"}`}>
         <div class="plan-left">
           {!options && !drawing ? (

@@ -24,6 +24,8 @@ export interface FlownPlan {
   options: PlanOptions;
   mission: string;
   curve: Curve;
+  /// Whether its chance is computed next.
+  awaits_chance: boolean;
   path: PathSummary | null;
   legs: { leg: string; kind: string; start_s: number; duration_s: number }[];
   /// What the program chose or left out.
@@ -152,12 +154,13 @@ export function isAboveTerrain(plan: string): boolean {
   return /"frame":\s*1[01]\b|^\d+\s+[01]\s+1[01]\s/m.test(plan);
 }
 
-/// Flies a plan; returns why it cannot be flown where it cannot.
+/// Flies a plan, as modelled or with its chance; returns why it cannot be flown where it cannot.
 export async function flyPlan(
   project: Project,
   aircraft: Aircraft,
   answered: Answered,
   asked: PlanOptions,
+  has_chance = true,
 ): Promise<FlownPlan | string> {
   return project.withAnswer(aircraft.id, answered, async (engine) => {
     const { question } = answered;
@@ -170,7 +173,7 @@ export async function flyPlan(
       made = await missionOf(engine, aircraft.folder, options, question);
     }
     if (typeof made === "string") return made;
-    const curve = await project.curveOrError(made.file, drawn_flights);
+    const curve = await project.curveOrError(made.file, has_chance ? drawn_flights : 0);
     if (typeof curve === "string") return curve;
     const path = await engine.run(["path", made.file, "--json", "-o", "legs.csv"]);
     const mission = await project.text(made.file);
@@ -178,6 +181,7 @@ export async function flyPlan(
     const [starts, times, kinds] = [numbers(table, "start_s"), numbers(table, "duration_s"), texts(table, "kind")];
     return {
       options, mission, curve,
+      awaits_chance: !has_chance && curve.simulation.packs == null,
       path: path.code === 0 && path.out ? (JSON.parse(path.out) as PathSummary) : null,
       legs: texts(table, "leg").map((leg, i) => ({
         leg,

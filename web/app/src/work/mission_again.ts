@@ -15,7 +15,7 @@ export function changedMission(files: Files, { file, sliders }: MissionAgain, ch
 
 /// Returns the number of flights to draw: none where how they differ is unknown, and none of a mission that is planned
 /// in flight, each of which would take as long as all else.
-function samplesOf({ summary }: MissionDocument): number {
+export function samplesOf({ summary }: MissionDocument): number {
   return summary.decisions == null ? summary.samples ?? 0 : 0;
 }
 
@@ -44,14 +44,14 @@ function projectWith(files: Files): Promise<Project> {
   return (opened ??= open());
 }
 
-/// Returns the charge over the changed mission, or why the program refuses it.
-export function flyAgain(files: Files, mission: MissionDocument, of: MissionAgain, changes: Changes): Promise<Curve | string> {
+/// Returns the charge over the changed mission, with so many drawn flights, or why the program refuses it.
+export function flyAgain(files: Files, of: MissionAgain, changes: Changes, samples: number): Promise<Curve | string> {
   return queue.result(async () => {
     const project = await projectWith(files);
     await project.write(of.file, changedMission(files, of, changes));
-    if (!of.is_planned) return project.curveOrError(of.file, samplesOf(mission));
+    if (!of.is_planned) return project.curveOrError(of.file, samples);
     const planned = of.file.replace(/[^/]*$/, "planned.toml");
     const result = await project.run(["plan", of.file, "--quiet", "-o", planned]);
-    return result.code === 0 ? project.curveOrError(planned, samplesOf(mission)) : errorsOf(result);
+    return result.code === 0 ? project.curveOrError(planned, samples) : errorsOf(result);
   }, true);
 }
