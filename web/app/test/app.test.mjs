@@ -101,6 +101,18 @@ test("a log that is refused has its reason", { skip, ...patience }, async (t) =>
   assert.match(await page.textContent(".log.not .log-reason"), /telemetry/);
 });
 
+test("logs whose reading was cancelled are counted, in the command, and read by a button", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await choose(page, [1, 2, 3].flatMap(sample));
+  await page.click(".reading button", patience);
+  await page.waitForSelector("h2:has-text('Reading was cancelled: 3 logs are not read')", patience);
+  assert.match(await page.textContent(".command code"), /^flightwatt opterra_synthetic_01.data /);
+  await page.click("button:text-is('Read')");
+  await page.waitForSelector(".log.used", patience);
+  assert.equal(await page.locator(".log.used").count(), 3);
+  assert.equal(await page.locator("h2:has-text('cancelled')").count(), 0);
+});
+
 test("hostile names are shown and stay names", { skip, ...patience }, async (t) => {
   const page = await open(t);
   const data = await readFile(sample(1)[0]);
@@ -329,6 +341,7 @@ test("a plan that a slider makes unflyable keeps its sliders", { skip, ...patien
   await move(page, "Wind", 2);
   await page.waitForSelector("[role=alert]", patience);
   assert.match(await page.textContent("h1"), /not flown/);
+  assert.doesNotMatch(await page.textContent("[role=alert]"), /flightwatt-|plans\//, "no names of the page's own");
   assert.equal(await page.locator(".plan-side button").count(), 0, "what is not flown is not saved");
   await move(page, "Wind", 0);
   await page.waitForSelector(".verdict-band.good", patience);

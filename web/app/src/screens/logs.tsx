@@ -234,16 +234,36 @@ function ReadingBar({ state, project }: { state: State; project: Project }) {
   );
 }
 
+/// The logs whose reading was cancelled.
+const unreadOf = ({ waiting, progress, aircraft, unused }: State) => {
+  const known = new Set([...aircraft.flatMap((one) => one.logs), ...unused].map(({ path }) => path));
+  return progress ? [] : waiting.filter(({ path }) => !known.has(path));
+};
+
+function Unread({ state, project }: { state: State; project: Project }) {
+  const unread = unreadOf(state);
+  if (unread.length === 0) return null;
+  return (
+    <section class="card aircraft" aria-label="Not read">
+      <header>
+        <h2>Reading was cancelled: {unread.length === 1 ? "1 log is" : `${unread.length} logs are`} not read</h2>
+        <button type="button" class="primary" onClick={() => project.readAgain()}>Read</button>
+      </header>
+      <Lines lines={unread} />
+    </section>
+  );
+}
+
 function heading(state: State): string {
   const used = state.aircraft.reduce((sum, one) => sum + one.logs.length, 0);
-  if (state.progress && used === 0) return "Reading";
+  if (used === 0 && (state.progress || unreadOf(state).length > 0)) return state.progress ? "Reading" : "No log is read yet";
   const aircraft = state.aircraft.length === 1 ? "1 aircraft" : `${state.aircraft.length} aircraft`;
   const unused = state.unused.length > 0 ? `, ${state.unused.length} not` : "";
   return `${aircraft}: ${used} ${used === 1 ? "log" : "logs"} used${unused}`;
 }
 
 function commandOf(project: Project, state: State): string {
-  const logs = [...state.aircraft.flatMap((one) => one.logs), ...state.unused];
+  const logs = [...state.aircraft.flatMap((one) => one.logs), ...state.unused, ...unreadOf(state)];
   const only = state.aircraft.length === 1 ? state.aircraft[0] : undefined;
   const capacity = only?.question.capacity_ah;
   const each = state.aircraft.length > 1 ? " --each" : "";
@@ -277,7 +297,8 @@ export function LogsScreen({ project, state }: { project: Project; state: State 
       {state.aircraft.map((aircraft) => (
         <AircraftCard key={aircraft.id} aircraft={aircraft} project={project} />
       ))}
-      {state.waiting.length > 0 && state.aircraft.length === 0 && (
+      <Unread state={state} project={project} />
+      {state.progress && state.waiting.length > 0 && state.aircraft.length === 0 && (
         <section class="card aircraft" aria-label="To be read">
           <Lines lines={state.waiting} />
         </section>

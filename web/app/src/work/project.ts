@@ -8,6 +8,7 @@ import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, Known, LogRecord, Manifest, Simulation } from "./documents";
 import { freePath, kindOf, safePath, tileName, type Dropped } from "./files";
 import * as storage from "./keep";
+import { rest_ms } from "./latest";
 import { inputsShown, isByFolder, optionsOf, type Question } from "./question";
 import { WorkQueue } from "./queue";
 import { logs_folder, type Aircraft, type Answered, type Curve, type LogLine, type State } from "./state";
@@ -24,18 +25,18 @@ const out_folder = "out";
 const settings_name = "settings.json";
 /// Answers quicker than this leave time for those of the sliders' steps.
 const quick_s = 0.5;
-/// A slider that has not moved for so long is asked the whole question.
-const rest_ms = 200;
 const kept_files = /\.(json|toml|csv)$/;
 
 const decoder = new TextDecoder();
 const names = (path: string) => path.split("/").pop() ?? path;
 
-/// Returns the lines of a kind ("error") that a run printed, each once and without the program's name.
+/// Returns the lines of a kind ("error") that a run printed, each once and without the names of the program and of this
+/// page's folders.
 function printed(result: RunResult, kind: string): string[] {
-  const begin = new RegExp(`^flightwatt[\\w-]*: ${kind}: `);
+  const begin = new RegExp(`^flightwatt[\\w-]*: (.*?: )??${kind}: `);
+  const folders = new RegExp(`\\b(${logs_folder}|${plans_folder}|${missions_folder})/`, "g");
   const lines = result.err.split("\n").filter((line) => line.includes(`: ${kind}: `));
-  return [...new Set(lines.map((line) => line.replace(begin, "").replaceAll(`${logs_folder}/`, "")))];
+  return [...new Set(lines.map((line) => line.replace(begin, (_, file = "") => file).replace(folders, "")))];
 }
 
 /// Returns what a run printed as errors, or why it ended.
@@ -208,6 +209,11 @@ export class Project {
     await storage.forget().catch(() => undefined);
     location.hash = "";
     location.reload();
+  }
+
+  /// Reads the logs whose reading was cancelled.
+  readAgain() {
+    this.queue.add(() => this.readLogs(), true);
   }
 
   cancel() {
