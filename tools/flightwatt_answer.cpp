@@ -70,6 +70,7 @@ struct KeptAnswer {
     answer::Answered capacity_ah;
     answer::Answered resistance_ohm;
     answer::Answered resistance_at_ohm;  ///< at the temperature that was asked for
+    std::optional<double> voltage_known_down_to_percent;
 };
 
 Fields<KeptAnswer> record_fields(const KeptAnswer*) {
@@ -82,7 +83,8 @@ Fields<KeptAnswer> record_fields(const KeptAnswer*) {
             field("ground_speed_m_per_s", &R::ground_speed_m_per_s),
             field("capacity_ah", &R::capacity_ah),
             field("resistance_ohm", &R::resistance_ohm),
-            field("resistance_at_ohm", &R::resistance_at_ohm)};
+            field("resistance_at_ohm", &R::resistance_at_ohm),
+            field("voltage_known_down_to_percent", &R::voltage_known_down_to_percent)};
 }
 
 /// The call with the folder of one aircraft in place of its logs.
@@ -261,7 +263,8 @@ void keep_answer(const cli::StageCall& call, const AnswerArguments& arguments, c
                           mean_ground_speed_m_per_s(aircraft.flights),
                           answer.pack.capacity_ah,
                           answer.pack.resistance_ohm,
-                          answer.pack.resistance_at_ohm};
+                          answer.pack.resistance_at_ohm,
+                          answer.pack.known_down_to_percent};
     Json json;
     json["format"] = format_version;
     json.update(record_json(kept));
@@ -293,6 +296,7 @@ cli::AircraftAnswer answer_again(const cli::StageCall& call, const AnswerArgumen
     answer.pack.resistance_ohm = kept.resistance_ohm;
     answer.pack.resistance_at_ohm = kept.resistance_at_ohm;
     answer.pack.asked_temperature_c = arguments.temperature_c;
+    answer.pack.known_down_to_percent = kept.voltage_known_down_to_percent;
     answer::KnownAircraft aircraft{mechanical::read_mechanical_model(folder / batch::model_name),
                                    folder / batch::model_name,
                                    folder / answer::pack_name,

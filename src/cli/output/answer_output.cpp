@@ -271,6 +271,8 @@ Fields<AircraftAnswer> record_fields(const AircraftAnswer*) {
         field("best_speeds", at(&R::endurance, &Endurance::best_speeds), "of endurance and range"),
         answered("capacity_ah", "of the pack", &R::pack, &PackAnswer::capacity_ah),
         field("flights_capacity_ah_interval_95", at(&R::pack, &PackAnswer::flights_capacity_ah), "by the flights"),
+        field("voltage_known_down_to_percent", at(&R::pack, &PackAnswer::known_down_to_percent),
+              "lowest charge of the flights, below which the voltage is assumed; null: no flight shows the voltage"),
         answered("resistance_ohm", "series resistance of the pack", &R::pack, &PackAnswer::resistance_ohm),
         field("resistance_ohm_interval_95", at(&R::pack, &PackAnswer::resistance_interval_ohm)),
         field("air_temperature_c_range", at(&R::pack, &PackAnswer::air_temperature_c), "means of the flights"),

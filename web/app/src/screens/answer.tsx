@@ -35,6 +35,12 @@ function Change({ text }: { text: string }) {
 const contradictsFlights = ({ capacity_ah: { value }, flights_capacity_ah_interval_95: flights }: Answer) =>
   value != null && flights != null && (value < flights.low || value > flights.high);
 
+/// Whether the pack is colder than in every flight, so that it holds less than is assumed.
+function isColderThanFlown({ temperature_c, battery_temperature_c_range: battery, air_temperature_c_range: air }: Answer) {
+  const flown = battery ?? air;
+  return temperature_c != null && flown != null && temperature_c < flown.low;
+}
+
 interface FiguresProps {
   now: Answered;
   measured?: Answered;
@@ -52,10 +58,11 @@ export function Figures({ now, measured, asking, is_moving, is_old }: FiguresPro
   const before = measured && now !== measured ? measured.answer : undefined;
   const time_before = is_chance ? before && mainTime(before) : before?.time_in_air_s;
   const speed = answer.airspeed_m_per_s.value;
+  const known_down_to = answer.voltage_known_down_to_percent;
   return (
     <section class={`card figures${is_old ? " old" : ""}`} aria-label="Time and distance" aria-busy={asking}>
       <Figure
-        label={`In the air, until ${number(answer.reserve_soc_percent, 0)} % is left`}
+        label={`In the air, ${isColderThanFlown(answer) ? "at most, " : ""}until ${number(answer.reserve_soc_percent, 0)} % is left`}
         value={duration(time.value)}
       >
         {is_chance && <Dots of_100={95} />}
@@ -67,6 +74,9 @@ export function Figures({ now, measured, asking, is_moving, is_old }: FiguresPro
           <Change text={changeOf(time.value, time_before?.value, duration)} />
         </p>
         {is_chance && <p class="soft">half of the flights: {duration(answer.time_in_air_s.value)}</p>}
+        {time.value != null && known_down_to != null && known_down_to > answer.reserve_soc_percent && (
+          <p class="soft">no flight went below {number(known_down_to, 0)} %: the voltage there is assumed</p>
+        )}
       </Figure>
       <Figure
         label={speed != null && !answer.is_hover
@@ -353,7 +363,7 @@ function headline({ answer, question }: Answered, is_moving: boolean): string {
   const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : is_moving ? " in half of the flights" : "";
   const asked = asWords(question);
   const begin = asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A";
-  return `${begin} full pack lasts ${duration(time.value)}${chance}`;
+  return `${begin} full pack lasts ${isColderThanFlown(answer) ? "at most " : ""}${duration(time.value)}${chance}`;
 }
 
 /// What the program warns of; what it warns of in a flight, which its line of the logs has too, is folded.

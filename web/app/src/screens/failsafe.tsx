@@ -137,6 +137,7 @@ function Parameters({ project, aircraft, answered, autopilot, is_old }: Failsafe
 export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafeProps) {
   const [chosen, setChosen] = useState<Autopilot>(autopilots[0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
+  const in_new = card?.low?.probability_too_late_interval_95;
   const home_m = aircraft.question.home_m ?? card?.home_distance_m;
   const setHome = (value: number | undefined) => project.ask(aircraft.id, { ...aircraft.question, home_m: value });
   return (
@@ -162,7 +163,8 @@ export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafePr
           <Parameters project={project} aircraft={aircraft} answered={answered} autopilot={chosen} is_old={is_old} />
           {card.low && <p class="small">
             The return begins too late in{" "}
-            {card.low.probability_too_late != null ? `${chance(card.low.probability_too_late)} flights` : "an unknown part of the flights"}.
+            {card.low.probability_too_late != null ? `${chance(card.low.probability_too_late)} flights` : "an unknown part of the flights"}
+            {in_new && `; of new flights in ${number(100 * in_new.low, 1)} to ${number(100 * in_new.high, 1)} of 100`}.
           </p>}
           <Folded title="What the failsafe rests on">
             <ul class="rests">

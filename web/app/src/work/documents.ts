@@ -36,6 +36,7 @@ interface FailsafeAction {
   soc_percent: number;
   remaining_mah: number;
   probability_too_late: number | null;
+  probability_too_late_interval_95: Interval | null;
   voltage: { voltage_v: number } | null;
 }
 
@@ -69,7 +70,11 @@ export interface Answer {
   best_speeds: { purpose: string; airspeed_m_per_s: number | null; below_flown: boolean; above_flown: boolean }[];
   capacity_ah: Known;
   flights_capacity_ah_interval_95: Interval | null;
+  voltage_known_down_to_percent: number | null;
   resistance_ohm: Known;
+  air_temperature_c_range: Interval | null;
+  battery_temperature_c_range: Interval | null;
+  temperature_c: number | null;
   prediction_error_percent: Known;
   packs: Pack[];
   failsafe: Failsafe | null;
