@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "mission/file/takeoff_height.h"
 #include "mission/planning/planner.h"
 #include "mission/sampling/landing_search.h"
 #include "path/path.h"
@@ -285,8 +284,7 @@ std::string describe_path_times(const MissionSetup& mission, double times) {
     const auto& plan = *mission.cruise_path->plan;
     const auto& drawn = drawn_path(plan);
     const auto flown_s = [&](double count) {
-        const auto rates = mission.mechanical ? flown_rates(*mission.mechanical) : path::ClimbRates{};
-        const auto part = repeated(drawn, plan.wind, count, rates);
+        const auto part = repeated(drawn, plan.wind, count, plan.rates);
         return compute_trajectory(as_flown(plan, part), plan.wind).duration_s;
     };
     const double whole = std::floor(times);

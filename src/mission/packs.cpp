@@ -159,8 +159,9 @@ class PackDivider {
         return {flown[at.element].drawn, before_s / all_s};
     }
 
-    /// The way from home to a position of the path, or home from it.
-    path::PathElement way(const path::PathPosition& position, bool is_home) const {
+    /// The way from home to a position of the path, or home from it. A height too large for it at the path's rates
+    /// changes above home.
+    std::vector<path::PathElement> ways(const path::PathPosition& position, bool is_home) const {
         const auto& elements = drawn_->elements;
         const double sign = is_home ? -1.0 : 1.0;
         const auto there = local_position_at(*drawn_, position) - packs_.home;
@@ -172,8 +173,20 @@ class PackDivider {
         for (const auto& element : path_between(*drawn_, {}, position).elements)
             way.altitude_change_m += sign * element.altitude_change_m;
         const double course_deg = std::atan2(sign * there.east_m, sign * there.north_m) * units::degree_per_rad;
-        way.shape = path::Leg{std::hypot(there.east_m, there.north_m), std::fmod(course_deg + 360.0, 360.0)};
-        return way;
+        const path::Leg leg{std::hypot(there.east_m, there.north_m), std::fmod(course_deg + 360.0, 360.0)};
+        way.shape = leg;
+        const double height_m = std::abs(way.altitude_change_m);
+        const auto rate = way.altitude_change_m > 0.0 ? plan_->rates.climb_m_per_s : plan_->rates.descent_m_per_s;
+        if (!rate || *rate >= way.airspeed_m_per_s) return {way};
+        const double speed =
+            ground_speed_m_per_s(way, *rate, leg.course_deg, plan_->wind).value_or(way.airspeed_m_per_s);
+        constexpr double same_height_m = 1e-3;
+        if (height_m < same_height_m || height_m / *rate * speed <= leg.length_m) return {way};
+        auto above_home = way;
+        above_home.shape = path::Hold{height_m / *rate, std::nullopt, way.keeps_ground_speed};
+        above_home.climb_rate_m_per_s = rate;
+        way.altitude_change_m = 0.0;
+        return is_home ? std::vector{way, above_home} : std::vector{above_home, way};
     }
 
     /// Makes setup and schedule those of a part.
@@ -204,10 +217,11 @@ class PackDivider {
         plan.path = path_between(*drawn_, from, to);
         auto& elements = plan.path.elements;
         if (part.start_s > 0.0) {
-            elements.insert(elements.begin(), way(from, false));
+            const auto there = ways(from, false);
+            elements.insert(elements.begin(), there.begin(), there.end());
             if (plan.origin) plan.origin->start = plan.origin->start + packs_.home;
         }
-        if (part.end_s < end_s_) elements.push_back(way(to, true));
+        if (part.end_s < end_s_) std::ranges::move(ways(to, true), std::back_inserter(elements));
         if (plan.turns) {
             plan.drawn = plan.path;
             plan.path = as_flown(plan, plan.drawn);

@@ -19,6 +19,7 @@ namespace flightwatt::path {
 namespace {
 
 constexpr double written_place_m = 1e-3;  // to which places are the same
+constexpr double same_time_s = 1e-6;
 constexpr double default_hover_m_per_s = 5.0, default_cruise_m_per_s = 15.0;
 
 /// Where the aircraft flies to, and what it does there.
@@ -92,7 +93,10 @@ class StopList {
     void add_hold(const PathElement& element, double time_s) {
         const bool is_there = !stops.empty() && !stops.back().circles && element.altitude_change_m == 0.0;
         if (!is_there) stops.push_back({at_, altitude_m_, element.airspeed_m_per_s});
-        stops.back().hold_s += time_s;
+        // The way to another altitude takes its time without a hold.
+        const auto& rate = element.climb_rate_m_per_s;
+        const double change_s = rate ? std::abs(element.altitude_change_m) / *rate : 0.0;
+        if (change_s == 0.0 || time_s > change_s + same_time_s) stops.back().hold_s += time_s;
     }
 
     static LocalPosition centre(const Circles& circles, const LocalPosition& start) {

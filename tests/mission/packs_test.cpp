@@ -263,6 +263,35 @@ TEST(PackFlights, TakeOffAndLandByTheHeightsOfTheirOwnEnds) {
     }
 }
 
+/// A way home of 40 m lost 200 m of height at the airspeed: what the descent takes was missing.
+TEST(PackFlights, ChangeLargeHeightsAboveHome) {
+    std::string legs =
+        "[[path.leg]]\nlength_m = 2000\ncourse_deg = 0\naltitude_m = 290\n"
+        "[[path.leg]]\nlength_m = 1960\ncourse_deg = 180\n";
+    for (int line = 0; line < 20; ++line)
+        legs += fmt::format("[[path.leg]]\nlength_m = 900\ncourse_deg = {}\n", line % 2 == 0 ? 90 : 270);
+    const auto all = fly_packs(read(wing +
+                                    "[packs]\ncount = 20\nchange_s = 60\n[path]\nairspeed_m_per_s = 13\n"
+                                    "altitude_m = 90\nstart = { latitude_deg = 47, longitude_deg = 8 }\n" +
+                                    legs));
+    ASSERT_TRUE(all.suffice) << describe(all);
+    ASSERT_GT(all.flights.size(), 1U);
+    for (const auto& flight : all.flights) {
+        const auto& elements = drawn_path(*setup_of(flight.mission).cruise_path->plan).elements;
+        const auto height_s = [](const path::PathElement& element) {
+            return std::get<path::Hold>(element.shape).time_s;  // the model's flights climb at 4 m/s, descend at 2.4
+        };
+        if (flight.pack > 1) {
+            EXPECT_NEAR(height_s(elements.front()), 200.0 / 4.0, 1e-9);
+        }
+        if (flight.return_from.empty()) continue;
+        EXPECT_NEAR(height_s(elements.back()), 200.0 / 2.4, 1e-9);
+        EXPECT_EQ(elements.at(elements.size() - 2).altitude_change_m, 0.0);
+    }
+    const auto& first = all.flights.front();
+    EXPECT_NEAR(soc_of_written(first, wing), *first.flown.simulation.summary.final_soc_percent, 0.01);
+}
+
 TEST(PackFlights, AreTheFewestAndShareTheChargeEvenly) {
     const auto text = [](int count) {
         return "duration_s = { cruise = 3000 }\n" + wing + fmt::format("[packs]\ncount = {}\nchange_s = 60\n", count);

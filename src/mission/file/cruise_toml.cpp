@@ -447,8 +447,10 @@ path::PlannedPath read_path(const TomlTable& table, const path::Wind& wind, cons
     if (mission.mechanical) defaults.rates_on_spot = flown_rates(*mission.mechanical);
     if (auto* repeated = repeated_circles(entries); reading.circles && repeated != nullptr)
         repeated->circles = *reading.circles;
-    path::PlannedPath plan;
-    plan.path = build_path(entries, defaults);
+    path::PlannedPath plan{build_path(entries, defaults), wind, {}};
+    const auto& [climb, descent] = defaults.rates;
+    plan.rates = {climb ? climb : defaults.rates_on_spot.climb_m_per_s,
+                  descent ? descent : defaults.rates_on_spot.descent_m_per_s};
     plan.origin = path_origin(entries, defaults);
     plan.start_above_ground_m = start_above_ground_m(entries, defaults);
     if (plan.origin && planned.home_altitude_m) plan.origin->ground_m = *planned.home_altitude_m;
@@ -557,11 +559,8 @@ void read_cruise_path(const TomlTable& mission_table, const MissionReadOptions& 
     }
     if (reading.cruise_s) throw NoResultError("the duration of the cruise follows from its path");
     apply_precedence_of_path(mission_table, mission);
-    const auto wind = read_wind(mission_table);
-    auto plan = read_path(*table, wind, reading, mission_table.optional_table("packs"), mission);
-    plan.wind = wind;
-    if (reading.path_times && mission.mechanical)
-        plan.path = repeated(plan.path, plan.wind, *reading.path_times, flown_rates(*mission.mechanical));
+    auto plan = read_path(*table, read_wind(mission_table), reading, mission_table.optional_table("packs"), mission);
+    if (reading.path_times) plan.path = repeated(plan.path, plan.wind, *reading.path_times, plan.rates);
     plan.power = power_model(mission_table, *table, plan.wind, mission);
     const bool is_physical = mission.mechanical->physical.has_value();
     add_turns_of_induced_drag(plan.power);
