@@ -48,7 +48,7 @@ struct PathElement {
     /// Rate of the change of altitude, which begins at the start of the element, the rest being level; more than 0 in
     /// climb and descent. Absent: the change is spread evenly over the element.
     std::optional<double> climb_rate_m_per_s = std::nullopt;
-    bool is_return_leg = false;   ///< the leg from the end of the path to its start
+    bool is_return_leg = false;   ///< the leg from the end of the path to its start, or the change of height there
     bool is_turn = false;         ///< circles between lines, which are not repeated
     std::size_t drawn = 0;        ///< of a path with turns: the index of its element in the path without them
     std::size_t survey_line = 0;  ///< the line of a survey that it flies or leads to, from 1; 0: none

@@ -3,6 +3,7 @@
 #include "base/units.h"
 
 #include <cmath>
+#include <utility>
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
@@ -72,11 +73,17 @@ class PathBuilder {
             home.altitude_m = start_altitude_m_;
             home.place = start_;
             change_m_ = altitude_change_m(home);
+            const bool is_too_steep = is_too_steep_for_return(home);
+            const double above_start_m = is_too_steep ? std::exchange(change_m_, 0.0) : 0.0;
             fly_to(home, start_);
             if (!path_.elements.empty() && path_.elements.back().name == home.name)
                 path_.elements.back().is_return_leg = true;
+            change_m_ += above_start_m;
             // Without a rate the height above the start is left to the landing.
-            if (change_m_ != 0.0 && rate_of(home)) change_height(home);
+            if (change_m_ != 0.0 && (rate_of(home) || is_too_steep)) {
+                change_height(home);
+                path_.elements.back().is_return_leg = true;
+            }
         }
         return std::move(path_);
     }
@@ -195,6 +202,15 @@ class PathBuilder {
         element.where = entry.where;
         path_.elements.push_back(std::move(element));
         change_m_ = 0.0;
+    }
+
+    /// Whether the way back to the start is too short for its change of height at the rates above one place.
+    bool is_too_steep_for_return(const PathEntry& home) const {
+        const double length_m = distance_between_m(place_, start_);
+        const auto& on_spot = defaults_.rates_on_spot;
+        const auto rate = change_m_ > 0.0 ? on_spot.climb_m_per_s : on_spot.descent_m_per_s;
+        return change_m_ != 0.0 && rate && !rate_of(home) && length_m > same_place_m &&
+               std::abs(change_m_) / *rate * defaults_.airspeed_m_per_s > length_m;
     }
 
     std::optional<double> rate_of(const PathEntry& entry) const {

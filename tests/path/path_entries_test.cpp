@@ -71,6 +71,25 @@ TEST(PathEntries, DoNotReturnWhereTheyAreBack) {
     EXPECT_EQ(build_path({out, back}, home).elements.size(), 2U);
 }
 
+/// The way back of 5 m lost 60 m of height at the airspeed.
+TEST(PathEntries, ReturnNoSteeperThanTheModelsFlights) {
+    auto home = defaults();
+    home.return_to_start = true;
+    home.altitude_m = 40.0;
+    home.rates_on_spot = {3.0, 2.0};
+    auto out = to(300.0, 0.0);
+    out.altitude_m = 100.0;
+    const auto near = build_path({out, to(5.0, 0.0)}, home).elements;
+    ASSERT_EQ(near.size(), 4U);
+    EXPECT_EQ(near[2].altitude_change_m, 0.0);
+    EXPECT_EQ(near[3].altitude_change_m, -60.0);
+    EXPECT_DOUBLE_EQ(std::get<Hold>(near[3].shape).time_s, 30.0);
+    EXPECT_TRUE(near[3].is_return_leg);
+    const auto far = build_path({out, to(1500.0, 0.0)}, home).elements;
+    ASSERT_EQ(far.size(), 3U);
+    EXPECT_EQ(far[2].altitude_change_m, -60.0);
+}
+
 TEST(PathEntries, CircleAroundAPlaceFromItsEdge) {
     const auto path = build_path({circles(to(1000.0, 0.0), 2.0, 100.0), to(0.0, 0.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 3U);
