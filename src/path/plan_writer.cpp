@@ -94,7 +94,8 @@ class StopList {
         const bool is_there = !stops.empty() && !stops.back().circles && element.altitude_change_m == 0.0;
         if (!is_there) stops.push_back({at_, altitude_m_, element.airspeed_m_per_s});
         // The way to another altitude takes its time without a hold.
-        const auto& rate = element.climb_rate_m_per_s;
+        const auto own = element.altitude_change_m > 0.0 ? plan_.rates.climb_m_per_s : plan_.rates.descent_m_per_s;
+        const auto rate = element.climb_rate_m_per_s ? element.climb_rate_m_per_s : own;
         const double change_s = rate ? std::abs(element.altitude_change_m) / *rate : 0.0;
         if (change_s == 0.0 || time_s > change_s + same_time_s) stops.back().hold_s += time_s;
     }

@@ -17,6 +17,7 @@ struct PlanToWrite {
     bool is_rotorcraft = false;
     TurnLimits turns = {};  ///< turns between lines that are narrower, in the wind, are left to the autopilot
     Wind wind = {};
+    ClimbRates rates = {};  ///< with which heights above one place change: that takes no hold
 };
 
 /// A plan in the format of a ground station.

@@ -99,6 +99,24 @@ TEST(PlanWriter, LeavesTurnsThatAreTooNarrowToTheAutopilot) {
         EXPECT_NEAR(flown_m(read_again(plan, format)), flown_m(plan.path), 0.1) << plan_ending(format);
 }
 
+/// A change of height above one place was written as a hold of its time, which the autopilot waits in addition.
+TEST(PlanWriter, WritesNoHoldForAChangeOfHeight) {
+    auto plan = flight();
+    plan.is_rotorcraft = true;
+    auto& elements = plan.path.elements;
+    elements.resize(1);
+    elements.front().shape = Leg{500.0, 0.0};
+    elements.push_back(elements.front());
+    elements.back().shape = Hold{40.0};
+    elements.back().altitude_change_m = 80.0;
+    const auto holds = [&] {
+        return write_plan(plan, PlanFormat::ardupilot).text.find("\t40.000000000000\t") != std::string::npos;
+    };
+    EXPECT_TRUE(holds()) << "a hold on which the height changes";
+    plan.rates = {2.0, 1.5};
+    EXPECT_FALSE(holds());
+}
+
 TEST(PlanWriter, WritesWhatIsReadAgain) {
     for (const bool is_rotorcraft : {false, true})
         for (const auto format : formats) {
