@@ -24,8 +24,8 @@ struct TurnedPath {
 /// Returns the radius [m] at which a turn in a wind needs the bank, downwind.
 double turn_radius_m(double airspeed_m_per_s, double bank_deg, double wind_m_per_s = 0.0);
 
-/// Returns the time [s] of a whole circle over ground in a wind: of a wing as wide as the bank needs, of a rotorcraft as
-/// fast as it permits.
+/// Returns the time [s] of a whole circle over ground in a wind: of a wing as wide as the bank needs, of a rotorcraft
+/// as fast as it permits.
 double circle_time_s(double radius_m, double airspeed_m_per_s, const Wind& wind, const TurnLimits& limits);
 
 /// Adds the turns to a path that is drawn with corners (docs/methods.md, Turns). A wing cuts a corner by an arc within
