@@ -28,14 +28,27 @@ double measured_wh(const PowerRecord& record, double start_s, double end_s) {
     return units::wh_from_joule(integrated(record.time_s, record.power_w, start_s, end_s));
 }
 
-/// Sum of a counter's falls in flight over that of its rises. On the ground a pack may be changed.
+/// The first of a few next samples that regains what the counter had before sample i; `last` if none does.
+std::size_t regained(const std::vector<double>& counter, std::size_t i, std::size_t last) {
+    constexpr std::size_t late_samples = 3;
+    const auto end = std::min(last, i + late_samples + 1);
+    for (auto next = i + 1; next < end; ++next)
+        if (counter[next] >= counter[i - 1]) return next;
+    return last;
+}
+
+/// Sum of a counter's falls in flight over that of its rises, without samples that came after later ones. On the ground a
+/// pack may be changed.
 double return_of(const std::vector<double>& counter, const std::vector<IndexSpan>& flown) {
     if (counter.empty()) return 0.0;
     double returned = 0.0;
     double risen = 0.0;
     for (const auto& [first, last] : flown) {
         for (auto i = first + 1; i < last; ++i) {
-            const double step = counter[i] - counter[i - 1];
+            const double before = counter[i - 1];
+            if (counter[i] < before)
+                if (const auto next = regained(counter, i, last); next < last) i = next;
+            const double step = counter[i] - before;
             (step < 0.0 ? returned : risen) += std::abs(step);
         }
     }

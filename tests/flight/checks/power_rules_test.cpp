@@ -331,6 +331,14 @@ TEST(PowerRules, OfCountersThatRunBackOrContradict) {
     };
     EXPECT_THAT(runs_back(0.6), Contains("the energy counter ran back by 6 % of its count in flight"));
     EXPECT_THAT(runs_back(0.45), IsEmpty());
+    const auto late_by = [](std::size_t samples) {
+        auto record = sound_record();
+        for (std::size_t i = 0; i < record.time_s.size(); ++i)
+            record.energy_wh.value.push_back(0.01 * static_cast<double>(i % 20 < samples ? i - i % 20 : i + 10));
+        return found_in(std::move(record)).power_faults;
+    };
+    EXPECT_THAT(late_by(3), IsEmpty()) << "a link with two ways has overtaken them";
+    EXPECT_THAT(late_by(4), Contains(HasSubstr("the energy counter ran back by")));
     const auto away = [](double percent, double rounding_percent) {
         auto record = sound_record();
         record.charge_ah.closure_percent = percent;
