@@ -69,7 +69,8 @@ std::optional<MavlinkFrame> read_mavlink_frame(std::string_view bytes) {
 }
 
 bool MavlinkSequence::add(const MavlinkFrame& frame) {
-    constexpr std::size_t remembered = 32;
+    constexpr std::size_t remembered = 96;  // of 256: a second radio may be seconds later
+    constexpr std::size_t late = 32;        // more would hide two senders with one id
     const auto key = static_cast<std::uint16_t>(frame.system << 8U | frame.component);
     const auto [found, is_first] = components_.try_emplace(key);
     auto& last = found->second;
@@ -81,7 +82,7 @@ bool MavlinkSequence::add(const MavlinkFrame& frame) {
         last.recent[last.next++ % remembered] = seen;
     ++received_;
     const auto ahead = static_cast<std::uint8_t>(frame.sequence - last.sequence - 1);
-    if (!is_first && ahead >= 256 - remembered) {  // it is late
+    if (!is_first && ahead >= 256 - late) {  // it is late
         if (lost_ > 0) --lost_;
         return true;
     }

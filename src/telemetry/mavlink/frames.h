@@ -42,7 +42,7 @@ std::optional<MavlinkFrame> read_mavlink_frame(std::string_view bytes);
 /// second radio is a copy, and one out of order is not lost.
 class MavlinkSequence {
   public:
-    /// Counts a packet. Returns false for a copy of one of the last 32 of its component.
+    /// Counts a packet. Returns false for a copy of one of the last 96 of its component.
     bool add(const MavlinkFrame& frame);
     std::size_t received() const { return received_; }
     std::size_t lost() const { return lost_; }

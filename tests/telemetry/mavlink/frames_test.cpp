@@ -97,5 +97,33 @@ TEST(MavlinkSequence, DoesNotCountCopiesAndLatePackets) {
     EXPECT_EQ(sequence.received(), 3U);
 }
 
+/// A radio that was 5 s later gave each value twice, and the note of two vehicles with one id.
+TEST(MavlinkSequence, TakesPacketsOfARadioThatIsSecondsLaterAsCopies) {
+    MavlinkSequence sequence;
+    test::MavlinkSender sender;
+    std::vector<MavlinkFrame> sent;
+    for (std::size_t i = 0; i < 600; ++i) {
+        sent.push_back(*read_mavlink_frame(sender.position(static_cast<double>(i), 5.0)));
+        EXPECT_TRUE(sequence.add(sent.back()));
+        if (i >= 90) {
+            EXPECT_FALSE(sequence.add(sent[i - 90]));
+        }
+    }
+    EXPECT_EQ(sequence.lost(), 0U);
+}
+
+TEST(MavlinkSequence, NoticesTwoSendersWithOneId) {
+    for (const std::uint8_t apart : {40, 64, 128, 192, 216}) {
+        MavlinkSequence sequence;
+        test::MavlinkSender first;
+        test::MavlinkSender second{1, 1, apart};
+        for (int i = 0; i < 600; ++i) {
+            sequence.add(*read_mavlink_frame(first.position(i, 5.0)));
+            sequence.add(*read_mavlink_frame(second.position(i, 50.0)));
+        }
+        EXPECT_TRUE(sequence.alternates()) << apart;
+    }
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry
