@@ -204,7 +204,8 @@ std::string probability_text(double probability) {
     constexpr double margin = 0.005;
     if (probability < margin) return "under 1 %";
     if (probability > 1.0 - margin) return "over 99 %";
-    return fmt::format("{:.0f} %", units::percentage(probability, 1.0));
+    // Halves upwards, as the page rounds: many are of 200 flights.
+    return fmt::format("{:.0f} %", std::round(units::percentage(probability, 1.0)));
 }
 
 MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessment& answer) {

@@ -220,6 +220,7 @@ TEST(WorstFirst, OrdersByOutcomeThenProbability) {
 TEST(ProbabilityText, IsNeverNoneOrAll) {
     EXPECT_EQ(probability_text(0.0), "under 1 %");
     EXPECT_EQ(probability_text(0.124), "12 %");
+    EXPECT_EQ(probability_text(0.485), "49 %") << "as the page, whose sliders show 49 of 100";
     EXPECT_EQ(probability_text(1.0), "over 99 %");
 }
 

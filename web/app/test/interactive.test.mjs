@@ -121,6 +121,8 @@ test("a rate of the software is changed where the schedule has it", { skip, ...p
 
 test("a mission that is to be planned is planned, and a refusal is shown as it is", { skip, ...patience }, async (t) => {
   const page = await open(t, "survey-path");
+  const steps = await page.locator(".mission-what-if input[type=range]").evaluateAll((all) => all.map(({ min, step }) => min / step));
+  for (const from of steps) assert.ok(Math.abs(from - Math.round(from)) < 1e-6, "what is shown is what is flown");
   await move(page, "Wind", 5);
   await settled(page);
   assert.match(await page.textContent(".mission-what-if .command code"),

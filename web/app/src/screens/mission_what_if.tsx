@@ -69,13 +69,16 @@ function Sliders({ sliders, changes, change }: { sliders: MissionSlider[]; chang
     <div>
       {sliders.map((slider, i) => {
         const { name, unit, digits } = wordsOf(slider, sliders);
-        const shown = (value: number) => quantity(value, Math.max(0, digits), unit).trim();
+        const [step, decimals] = [10 ** -digits, Math.max(0, digits)];
+        // What is shown is what is flown: the values of the slider have no more decimals.
+        const atStep = (steps: number) => Number((steps * step).toFixed(decimals));
+        const shown = (value: number) => quantity(value, decimals, unit).trim();
         const now = changes[i];
         const written = `${shown(slider.value)}${slider.places.length > 0 ? "" : ", not stated"}`;
         return (
-          <Slider key={i} label={name} value={now ?? slider.value} min={slider.low} max={slider.high} step={10 ** -digits}
+          <Slider key={i} label={name} value={now ?? slider.value} min={atStep(Math.ceil(slider.low / step - 1e-9))} max={atStep(Math.floor(slider.high / step + 1e-9))} step={step}
             shown={now != null ? shown(now) : written} changed={now != null} hint={now != null ? `as written: ${written}` : undefined}
-            onChange={(next) => change(i, Number(next.toFixed(6)))} />
+            onChange={(next) => change(i, Number(next.toFixed(decimals)))} />
         );
       })}
     </div>

@@ -77,7 +77,7 @@ function slidersOf(measured: Answered, { question, own_capacity_ah: own_ah }: Ai
       unit: "Ah",
       decimals: 1,
       basis: question.capacity_ah != null ? "assumption" : basisOf(answer.capacity_ah.basis),
-      range: [0.1 * Math.ceil(2.5 * middle_ah), Math.ceil(2 * middle_ah), 0.1],
+      range: [Math.ceil(2.5 * middle_ah) / 10, Math.ceil(2 * middle_ah), 0.1],
       base: question.capacity_ah == null ? answer.capacity_ah.value : null,
       base_words: own_ah == null && answer.capacity_ah.value == null ? "unknown" : quantity(own_ah ?? answer.capacity_ah.value, 1, "Ah"),
     },
