@@ -293,6 +293,18 @@ test("the command of a plan gives the number of the screen in an empty folder", 
   assert.match(await page.textContent(".verdict-band"), new RegExp(`Lands with ${final_soc_percent.toFixed(1)} %`));
 });
 
+test("a plan over several packs has the least chance of its flights", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [areaOf("field.geojson", 0.01, 0.005)], "Choose a plan");
+  await page.waitForSelector(".verdict-band.good", patience);
+  await move(page, "Packs", 2);
+  await page.waitForSelector(".verdict-band:has-text('with each pack')", patience);
+  assert.match(await page.textContent(".pack-flights"), /Pack 1.* of 100 keep the reserve/);
+});
+
 test("an edited plan of the same name has its own verdict and keeps the sliders", { skip, ...patience }, async (t) => {
   const page = await open(t);
   await dropThree(page);

@@ -98,7 +98,7 @@ function Band({ flown: { curve, awaits_chance }, asking }: { flown: FlownPlan; a
       </div>
       {verdict.chance && (
         <p class="band-chance">
-          <b>{figure}</b> of {rest.join(" of ")} flights keep the reserve
+          <b>{figure}</b> of {rest.join(" of ")} flights keep the reserve{curve.simulation.packs ? ", with each pack" : ""}
         </p>
       )}
     </section>
@@ -448,6 +448,7 @@ function PacksTable({ simulation }: { simulation: Simulation }) {
       {simulation.flights.map((flight) => (
         <li>
           <b>Pack {flight.pack}</b> {duration(flight.duration_s)}, lands with {number(flight.final_soc_percent, 1)} %
+          {flight.probability_below_reserve != null && `, ${chance(1 - flight.probability_below_reserve)} keep the reserve`}
           {flight.return_from ? `; leaves at ${flight.return_from}` : ""}
         </li>
       ))}

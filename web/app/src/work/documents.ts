@@ -138,7 +138,7 @@ export interface Simulation {
   packs?: number;
   packs_needed?: number;
   on_ground_s?: number;
-  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null; with_capacity_of_flights?: Simulation["with_capacity_of_flights"] }[];
+  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null; probability_below_reserve?: number | null; with_capacity_of_flights?: Simulation["with_capacity_of_flights"] }[];
 }
 
 /// A change of a plan that may make it fit, of `flightwatt check --json`.

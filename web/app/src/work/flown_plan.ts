@@ -67,7 +67,10 @@ export function planCommand(inputs: string, folder: string, options: PlanOptions
   if (/\.toml$/i.test(options.plan)) return `flightwatt simulate ${mission}${samples}`;
   const args = newMissionArguments(folder, { ...options, plan: options.plan.replace(/^plans\//, "") }, question);
   const answer = ["flightwatt", inputs, ...optionsOf({ capacity_ah: question.capacity_ah, temperature: question.temperature })];
-  return `${answer.join(" ")} && flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}`;
+  const chances = options.packs > 1
+    ? ` && flightwatt plan plan.toml --packs -o packs && for pack in packs/pack-*.toml; do flightwatt simulate "$pack" --samples ${drawn_flights}; done`
+    : "";
+  return `${answer.join(" ")} && flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}${chances}`;
 }
 
 /// Of a plan, for its chance.
@@ -154,6 +157,23 @@ export function isAboveTerrain(plan: string): boolean {
   return /"frame":\s*1[01]\b|^\d+\s+[01]\s+1[01]\s/m.test(plan);
 }
 
+/// Adds the chance of each flight of several packs, drawn as `plan --packs` writes it, and the least one as the plan's.
+async function addChances(engine: Engine, mission: string, simulation: Simulation) {
+  const folder = "plan-chances";
+  await engine.remove(folder);
+  if ((await engine.run(["plan", mission, "--packs", "-o", folder, "--quiet"])).code !== 0) return;
+  const below: number[] = [];
+  for (const flight of simulation.flights ?? []) {
+    const file = `${folder}/pack-${flight.pack}.toml`;
+    const drawn = await engine.run(["simulate", file, "--samples", String(drawn_flights), "--json", "--quiet", "-o", "chance.csv"]);
+    const probability = drawn.out ? (JSON.parse(drawn.out) as Simulation).probability_below_reserve : null;
+    if (probability == null) return;
+    flight.probability_below_reserve = probability;
+    below.push(probability);
+  }
+  simulation.probability_below_reserve = Math.max(...below);
+}
+
 /// Flies a plan, as modelled or with its chance; returns why it cannot be flown where it cannot.
 export async function flyPlan(
   project: Project,
@@ -175,13 +195,15 @@ export async function flyPlan(
     if (typeof made === "string") return made;
     const curve = await project.curveOrError(made.file, has_chance ? drawn_flights : 0);
     if (typeof curve === "string") return curve;
+    const is_divided = curve.simulation.packs != null;
+    if (has_chance && is_divided && curve.simulation.keeps_reserve) await addChances(engine, made.file, curve.simulation);
     const path = await engine.run(["path", made.file, "--json", "-o", "legs.csv"]);
     const mission = await project.text(made.file);
     const table = path.code === 0 ? parseCsv(await project.text("legs.csv").catch(() => "")) : { head: [], rows: [] };
     const [starts, times, kinds] = [numbers(table, "start_s"), numbers(table, "duration_s"), texts(table, "kind")];
     return {
       options, mission, curve,
-      awaits_chance: !has_chance && curve.simulation.packs == null,
+      awaits_chance: !has_chance && (!is_divided || curve.simulation.keeps_reserve),
       path: path.code === 0 && path.out ? (JSON.parse(path.out) as PathSummary) : null,
       legs: texts(table, "leg").map((leg, i) => ({
         leg,
