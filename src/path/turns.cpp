@@ -132,7 +132,8 @@ class WingTurns {
         const double cut = cut_m(i);
         const bool begins_bent = is_bent(at_.course_deg, drawn_[i].start.course_deg);
         const bool is_short = length_m(elements_[i].shape) < 2.0 * radius(i);
-        if (has_corner(i) && !is_leg(i + 1) && !is_replaced(i + 1))
+        is_entered_ = has_corner(i) && !is_leg(i + 1) && !is_replaced(i + 1);
+        if (is_entered_)
             target = entry(i + 1);
         else if (begins_bent && is_short && cut == 0.0 && has_corner(i))
             target.course_deg = drawn_[i + 1].start.course_deg;
@@ -151,12 +152,14 @@ class WingTurns {
         auto element = elements_[i];
         auto& circles = std::get<Circles>(element.shape);
         if (!element.is_turn && circles.radius_m < least_radius(i) * (1.0 - 1e-9)) widened_.push_back(i);
-        if (!skipped_turns_ && is_bent(at_.course_deg, drawn_[i].start.course_deg)) fly_to(i, entry(i));
+        if (!std::exchange(is_entered_, false) && is_bent(at_.course_deg, drawn_[i].start.course_deg))
+            fly_to(i, entry(i));
+        else
+            carry_height(i);
         circles.radius_m = flown_radius(i);
         circles.start_course_deg = at_.course_deg;
-        circles.turns -= std::exchange(skipped_turns_, std::nullopt).value_or(0.0);
-        element.altitude_change_m += std::exchange(height_m_, 0.0);
-        at_ = {after(at_.place, element), drawn_[i].end.course_deg};
+        element.altitude_change_m = std::exchange(height_m_, 0.0);
+        at_ = {after(at_.place, element), at_.course_deg + (circles.to_right ? 360.0 : -360.0) * circles.turns};
         turned_.path.elements.push_back(std::move(element));
     }
 
@@ -165,27 +168,25 @@ class WingTurns {
         return elements_[i].is_turn ? drawn_m : std::max(drawn_m, least_radius(i));
     }
 
-    /// Where circles are entered: of the places on their first half turn the one with the shortest way to the end of the
-    /// circles. Parts of patterns are entered where they are drawn.
-    Pose entry(std::size_t i) {
+    /// Where circles are entered: of their places the one with the shortest way there, from which they are counted.
+    /// Parts of patterns are entered where they are drawn.
+    Pose entry(std::size_t i) const {
         const auto& circles = std::get<Circles>(elements_[i].shape);
         const auto& start = drawn_[i].start;
-        skipped_turns_ = 0.0;
         if (elements_[i].is_turn) return start;
-        constexpr double steps = 72.0;
+        constexpr int steps = 72;
         const double side = circles.to_right ? 1.0 : -1.0;
         const auto centre = moved(start.place, circles.radius_m, start.course_deg + side * 90.0);
         Pose best;
         double least_m = std::numeric_limits<double>::infinity();
-        for (double turns = 0.0; turns <= std::min(0.5, circles.turns); turns += 1.0 / steps) {
-            const double course_deg = start.course_deg + side * 360.0 * turns;
+        for (int step = 0; step < steps; ++step) {
+            const double course_deg = at_.course_deg + 360.0 * step / steps;
             const Pose tried{moved(centre, flown_radius(i), course_deg - side * 90.0), course_deg};
-            double way_m = -units::rad_from_turns(turns) * flown_radius(i);
+            double way_m = 0.0;
             for (const auto& shape : shortest_way(at_, tried, radius(i))) way_m += length_m(shape);
             if (way_m >= least_m) continue;
             least_m = way_m;
             best = tried;
-            skipped_turns_ = turns;
         }
         return best;
     }
@@ -193,7 +194,7 @@ class WingTurns {
     void hold(std::size_t i) {
         turned_.path.elements.push_back(elements_[i]);
         turned_.path.elements.back().altitude_change_m += std::exchange(height_m_, 0.0);
-        at_ = drawn_[i].end;
+        at_ = {after(at_.place, elements_[i]), drawn_[i].end.course_deg};
         if (i + 1 < elements_.size()) at_.course_deg = drawn_[i + 1].start.course_deg;
     }
 
@@ -290,9 +291,9 @@ class WingTurns {
     std::vector<Drawn> drawn_;
     TurnedPath turned_;
     Pose at_;
-    double height_m_ = 0.0;                ///< change that is not flown yet
-    double added_m_ = 0.0;                 ///< by ways that are not straight
-    std::optional<double> skipped_turns_;  ///< of circles that were entered behind their start
+    double height_m_ = 0.0;    ///< change that is not flown yet
+    double added_m_ = 0.0;     ///< by ways that are not straight
+    bool is_entered_ = false;  ///< at the place where the next circles begin
     std::vector<std::size_t> bound_;
     std::vector<std::size_t> widened_;
 };

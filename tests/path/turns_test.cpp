@@ -97,6 +97,33 @@ TEST(Turns, FlyOverSharpCornersAndReturn) {
     EXPECT_TRUE(turned.notes.empty()) << "no limit binds: a corner so sharp is always flown over";
 }
 
+/// As autopilots count: from the entry on, wherever that is.
+TEST(Turns, FlyCirclesAsOftenAsStated) {
+    const Circles stated{100.0, 2.0, true, 270.0};
+    const FlightPath drawn{{element_of(Leg{500.0, 0.0}), element_of(stated), element_of(Leg{400.0, 0.0})}};
+    const auto turned = fly_turns(drawn, {}, {});
+    double most_turns = 0.0;
+    double legs_m = 0.0;
+    for (const auto& element : turned.path.elements) {
+        if (const auto* circles = std::get_if<Circles>(&element.shape))
+            most_turns = std::max(most_turns, circles->turns);
+        else
+            legs_m += std::get<Leg>(element.shape).length_m;
+    }
+    EXPECT_DOUBLE_EQ(most_turns, stated.turns);
+    EXPECT_GT(legs_m, 900.0 - stated.radius_m);
+    EXPECT_NEAR(end_of(turned.path).north_m, end_of(drawn).north_m, 1e-4);
+    EXPECT_NEAR(end_of(turned.path).east_m, end_of(drawn).east_m, 1e-4);
+}
+
+TEST(Turns, CarryTheHeightOfCirclesOnce) {
+    FlightPath drawn{{element_of(Circles{100.0, 1.0, true, 0.0}), element_of(Circles{100.0, 1.0, false, 90.0})}};
+    drawn.elements.back().altitude_change_m = 30.0;
+    double height_m = 0.0;
+    for (const auto& element : fly_turns(drawn, {}, {}).path.elements) height_m += element.altitude_change_m;
+    EXPECT_DOUBLE_EQ(height_m, 30.0);
+}
+
 TEST(Turns, NeverBankMoreThanTheLimit) {
     const Wind wind{6.0, 250.0};
     FlightPath drawn = polygon(5, 30.0);
