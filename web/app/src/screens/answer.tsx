@@ -45,13 +45,13 @@ interface FiguresProps {
   now: Answered;
   measured?: Answered;
   asking: boolean;
-  /// Whether they are as modelled alone, while a slider moves.
-  is_moving?: boolean;
+  /// Whether they are as modelled while a slider moves, and their chance is computed when it rests.
+  awaits_chance?: boolean;
   /// Whether they answer another question than that of now.
   is_old: boolean;
 }
 
-export function Figures({ now, measured, asking, is_moving, is_old }: FiguresProps) {
+export function Figures({ now, measured, asking, awaits_chance, is_old }: FiguresProps) {
   const { answer } = now;
   const time = mainTime(answer);
   const is_chance = answer.time_in_air_95_s.value != null;
@@ -69,7 +69,7 @@ export function Figures({ now, measured, asking, is_moving, is_old }: FiguresPro
         <p class="figure-note">
           {is_chance
             ? <b class={contradictsFlights(answer) ? "" : "ok"}>in 95 of 100 flights</b>
-            : is_moving ? <><b>half of the flights</b>; 95 of 100: computing</>
+            : awaits_chance ? <><b>half of the flights</b>; 95 of 100: computing</>
             : time.value != null ? `no chances yet: ${answer.time_in_air_95_s.unknown}` : inPageWords(time.unknown)}
           <Change text={changeOf(time.value, time_before?.value, duration)} />
         </p>
@@ -86,7 +86,7 @@ export function Figures({ now, measured, asking, is_moving, is_old }: FiguresPro
       >
         <p class="figure-note">
           {answer.distance_m.value != null
-            ? <>{is_chance || is_moving ? <b>half of the flights</b> : "as modelled"}, out and back</>
+            ? <>{is_chance || awaits_chance ? <b>half of the flights</b> : "as modelled"}, out and back</>
             : inPageWords(answer.distance_m.unknown)}
           <Change text={changeOf(answer.distance_m.value, before?.distance_m.value, distance)} />
         </p>
@@ -355,12 +355,12 @@ function PackHealth({ answer }: { answer: Answer }) {
   );
 }
 
-function headline({ answer, question }: Answered, is_moving: boolean): string {
+function headline({ answer, question }: Answered, awaits_chance: boolean): string {
   const time = mainTime(answer);
   if (time.value == null) return answer.power_w.value != null
     ? `It draws ${quantity(answer.power_w.value, answer.power_w.value < 100 ? 1 : 0, "W")}; how long is not known yet`
     : "How long it flies is not known yet";
-  const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : is_moving ? " in half of the flights" : "";
+  const chance = answer.time_in_air_95_s.value != null ? " in 95 of 100 flights" : awaits_chance ? " in half of the flights" : "";
   const asked = asWords(question);
   const begin = asked ? `${asked.charAt(0).toUpperCase()}${asked.slice(1)} a` : "A";
   return `${begin} full pack lasts ${isColderThanFlown(answer) ? "at most " : ""}${duration(time.value)}${chance}`;
@@ -420,6 +420,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
   const is_old = project.isOld(aircraft.id);
   const asking = is_old && !aircraft.failed;
   const shown = moving ?? now;
+  const awaits_chance = moving != null && now.answer.time_in_air_95_s.value != null;
   const { answer } = shown;
   const command = ["flightwatt", project.inputsShown(aircraft.logs, aircraft), ...optionsOf(aircraft.question).map(quoted)].join(" ");
   return (
@@ -431,7 +432,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
             {answer.packs[0]?.cells ? ` · ${answer.packs[0].cells} cells` : ""}
             {answer.capacity_ah.value != null ? ` · ${quantity(answer.capacity_ah.value, 1, "Ah")}` : ""}
           </p>
-          <h1 class={is_old && !moving ? "old" : ""} aria-live="polite">{headline(shown, moving != null)}</h1>
+          <h1 class={is_old && !moving ? "old" : ""} aria-live="polite">{headline(shown, awaits_chance)}</h1>
         </div>
       </header>
       {aircraft.failed && <Card class="failed"><Verdict grade="bad">{inPageWords(aircraft.failed)}</Verdict></Card>}
@@ -440,7 +441,7 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
       <div class="answer">
         <WhatIf project={project} aircraft={aircraft} asking={asking} />
         <div class="answer-middle">
-          <Figures now={shown} measured={measured} asking={asking} is_moving={moving != null} is_old={is_old && !moving} />
+          <Figures now={shown} measured={measured} asking={asking} awaits_chance={awaits_chance} is_old={is_old && !moving} />
           <ChargeCard now={shown} measured={measured} />
           <div class="pair">
             <RestsOn answer={answer} />

@@ -559,7 +559,9 @@ const packOf = ({ capacity_ah, temperature }: Question) => JSON.stringify([capac
 
 /// Returns an answer as modelled, with the pack and what else of the whole one it was made with.
 function asModelled(whole: Answer, modelled: Answer): Answer {
-  const { reserve_soc_percent, is_hover, power_w, time_in_air_s, time_in_air_95_s, airspeed_m_per_s, distance_m, distance_across_m, notes } = modelled;
+  const { reserve_soc_percent, is_hover, power_w, time_in_air_s, airspeed_m_per_s, distance_m, distance_across_m, notes } = modelled;
+  // Where the whole one has no chance, neither will the next.
+  const time_in_air_95_s = whole.time_in_air_95_s.value != null ? modelled.time_in_air_95_s : whole.time_in_air_95_s;
   return { ...whole, reserve_soc_percent, is_hover, power_w, time_in_air_s, time_in_air_95_s, airspeed_m_per_s, distance_m, distance_across_m, notes };
 }
 
