@@ -149,7 +149,7 @@ export function WhatIf({ project, aircraft, asking }: { project: Project; aircra
           ·{" "}
           {distance(shown.answer.distance_m.value)}
         </b>}{" "}
-        <span class="soft">{asking ? "computing" : shown.answer.time_in_air_95_s.value != null ? "95 of 100" : ""}</span>
+        <span class="soft">{asking && aircraft.moving ? "half of the flights" : asking ? "computing" : shown.answer.time_in_air_95_s.value != null ? "95 of 100" : ""}</span>
       </p>
       {slidersOf(measured, aircraft, middle_ah).map((slider) => {
         const asked = question[slider.key];
