@@ -59,7 +59,7 @@ struct AnswerArguments {
     bool again = false;
 };
 
-/// What an answer leaves in its folder for --again, beside the model and the pack.
+/// What an answer leaves in its folder for --again, in addition to the model and the pack.
 struct KeptAnswer {
     std::string key;  ///< of what it is repeated with, see key_of()
     std::string aircraft;
@@ -272,7 +272,7 @@ void keep_answer(const cli::StageCall& call, const AnswerArguments& arguments, c
 }
 
 /// Answers as modelled, with the model and the pack that the last answer left in the folder; no log is read and no
-/// flight is drawn. Throws InputError where that answer is none of these logs and this pack.
+/// flight is drawn. Throws InputError where that answer is of other logs or another pack.
 cli::AircraftAnswer answer_again(const cli::StageCall& call, const AnswerArguments& arguments,
                                  const std::filesystem::path& folder) {
     const OverwriteExemption own_files;
