@@ -184,6 +184,15 @@ std::vector<Vehicle> vehicles_of(const Census& census, const std::filesystem::pa
     return vehicles;
 }
 
+/// Whether the bytes begin with two packets behind eight bytes each, the first with a checksum that fits.
+bool begins_with_packets(std::string_view bytes) {
+    if (bytes.size() < tlog_time_bytes) return false;
+    const auto first = read_mavlink_frame(bytes.substr(tlog_time_bytes));
+    if (!first || first->message == nullptr) return false;
+    const auto second = 2 * tlog_time_bytes + first->bytes;
+    return bytes.size() > second && mavlink_frame_bytes(bytes.substr(second)) != 0;
+}
+
 }  // namespace
 
 bool is_tlog(std::string_view bytes) {
@@ -192,7 +201,7 @@ bool is_tlog(std::string_view bytes) {
         const auto entry = read_tlog_entry(bytes.substr(at));
         if (entry && (entry->frame.message != nullptr || at == 0)) return true;
     }
-    return false;
+    return begins_with_packets(bytes);  // without times, which read_tlog() refuses
 }
 
 std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesystem::path& file,
@@ -201,6 +210,10 @@ std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesyste
     for_each_entry(
         bytes, [&](const Entry& entry, std::size_t) { census.add(entry); }, [](std::size_t, std::size_t) {});
     auto vehicles = vehicles_of(census, file, wanted);
+    if (census.start_us == 0) {
+        throw InputError({file.string()}, "has MAVLink, but no times between 2001 and 2100",
+                         "the clock of the computer that recorded it was not set: read the autopilot's own log");
+    }
     if (vehicles.empty()) {
         throw InputError({file.string()}, "has MAVLink, but no messages of a vehicle",
                          "expected heartbeats of an autopilot: was the recording made while it was connected?");

@@ -158,5 +158,17 @@ TEST(Tlog, IsNotFoundInOtherFiles) {
     EXPECT_FALSE(is_tlog(test::MavlinkSender{}.heartbeat()));  // without a time
 }
 
+/// Of a computer without a set clock it had "no telemetry in its lines".
+TEST(Tlog, IsRefusedWithoutTimes) {
+    test::MavlinkSender vehicle;
+    const std::string unset("\0\0\0\0\5\xF5\xE1\0", 8);  // 100 s after 1970
+    std::string log;
+    for (int i = 0; i < 10; ++i) log += unset + vehicle.heartbeat() + unset + vehicle.position(i, 0.0);
+    EXPECT_TRUE(is_tlog(log));
+    EXPECT_THAT(test::rejected([&] { read_tlog(log, "a.tlog", {}); }), HasSubstr("the clock of the computer"));
+    EXPECT_FALSE(is_tlog(log.substr(0, 30))) << "one packet alone";
+    EXPECT_FALSE(is_tlog("12345678"));
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry
