@@ -66,7 +66,11 @@ double is_armed_mode(const std::vector<double>& base_mode) {
 /// 0 is undefined, 1 on ground, 2 to 4 in the air, taking off and landing.
 double is_landed(const std::vector<double>& state) { return state[0] == 0.0 ? no_value : state[0] == 1.0 ? 1.0 : 0.0; }
 
-double if_known_time(const std::vector<double>& utc_s) { return utc_s[0] > 0.0 ? utc_s[0] : no_value; }
+/// Without a week GPS counts from 1980 on.
+double if_known_time(const std::vector<double>& utc_s) {
+    constexpr double second_gps_week_s = 316'569'600.0;
+    return utc_s[0] > second_gps_week_s ? utc_s[0] : no_value;
+}
 
 std::vector<FamilyTrack> mavlink_tracks() {
     constexpr auto mean = Merge::mean;

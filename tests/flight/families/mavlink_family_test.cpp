@@ -187,6 +187,23 @@ TEST(MavlinkFamily, TakesTheStatusThatContinuesWhereTheBatteryHasEnded) {
     EXPECT_NEAR(select_tracks(series).power_w.time_s.back(), 119.0, 1.0);
 }
 
+/// A receiver that did not know the week dated a flight to 2019.
+TEST(MavlinkFamily, IsDatedByTheStationUntilTheVehicleKnowsTheTime) {
+    const auto begin_s = [](double first_s) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            const auto time_us = static_cast<std::uint64_t>((first_s + i) * 1e6);
+            return std::vector{vehicle.status(16'000, rising_ca(i)),
+                               vehicle.packet(2, test::little_endian(time_us) + std::string(4, '\1'))};
+        });
+        return series.start_clock_s.value();
+    };
+    EXPECT_NEAR(begin_s(315'964'800.0), 1.78e9, 1.0) << "1980";
+    EXPECT_NEAR(begin_s(0.0), 1.78e9, 1.0);
+    EXPECT_NEAR(begin_s(1.79e9), 1.79e9, 1.0);
+    EXPECT_NEAR(begin_s(1.79e9 - 1024.0 * 604'800.0), 1.79e9, 1.0);
+}
+
 /// With a battery's message every 45 s, the power was that of it or of the status by turns while the log grew.
 TEST(MavlinkFamily, TakesTheStatusWhereTheBatterysMessageIsRare) {
     for (const int every_s : {6, 45}) {
