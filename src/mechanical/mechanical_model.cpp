@@ -245,6 +245,7 @@ void list_physical(TomlFields& fields, PhysicalModel& model) {
     fields.count("samples", model.samples);
     fields.real("mean_airspeed_m_per_s", model.mean_airspeed_m_per_s, at_least(0.0));
     fields.optional_real("cubic_mean_airspeed_m_per_s", model.cubic_mean_airspeed_m_per_s, at_least(0.0));
+    fields.optional_real("airspeed_spread_m_per_s", model.airspeed_spread_m_per_s, at_least(0.0));
     fields.table("airspeed_m_per_s", model.airspeed_m_per_s, list_range);
     fields.optional_real("airspeed_sd_m_per_s", model.airspeed_sd_m_per_s, at_least(0.0));
     fields.table("climb_m_per_s", model.climb_m_per_s, list_range);
@@ -294,6 +295,20 @@ void list_model(TomlFields& fields, MechanicalModel& model) {
     if (model.physical)
         fields.line("\n# Power from the motion through the air: power_w = sum of coefficient * value over the terms");
     fields.optional_table("physical", model.physical, list_physical, TomlLayout::section);
+}
+
+/// The mean power [W] of level flight straight ahead at the airspeeds of the cruises: at two airspeeds with their mean and
+/// standard deviation, as the power at the mean airspeed is less than the mean power of slower and faster flights.
+double straight_power_w(const PhysicalModel& physical) {
+    const double mean = physical.mean_airspeed_m_per_s;
+    const double spread = physical.airspeed_spread_m_per_s.value_or(0.0);
+    const double slow = std::max(0.0, mean - spread);
+    const double fast = spread > 0.0 ? mean + spread * spread / (mean - slow) : mean;
+    const double fast_part = spread > 0.0 ? (mean - slow) / (fast - slow) : 1.0;
+    const auto power_at_w = [&](double airspeed) {
+        return std::max(0.0, sum_of_terms_w(physical, term_values({airspeed}, physical.load)));
+    };
+    return fast_part * power_at_w(fast) + (1.0 - fast_part) * power_at_w(slow);
 }
 
 }  // namespace
@@ -501,9 +516,7 @@ std::size_t model_order(const MechanicalModel& model) {
 double power_beyond_straight_flight_w(const MechanicalModel& model) {
     const auto& physical = model.physical;
     if (!physical || !(physical->mean_airspeed_m_per_s > 0.0)) return 0.0;
-    const auto straight = term_values({physical->mean_airspeed_m_per_s}, physical->load);
-    return std::max(
-        0.0, mean_power_w(model.phases[flight::Phase::cruise]) - std::max(0.0, sum_of_terms_w(*physical, straight)));
+    return std::max(0.0, mean_power_w(model.phases[flight::Phase::cruise]) - straight_power_w(*physical));
 }
 
 }  // namespace flightwatt::mechanical

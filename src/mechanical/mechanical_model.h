@@ -220,8 +220,8 @@ std::vector<std::string> fit_notes(const MechanicalModel& model);
 /// Returns the most harmonics that a phase of the model has.
 std::size_t model_order(const MechanicalModel& model);
 
-/// Returns what the cruise of the model's flights takes beyond level flight straight ahead at their mean airspeed, by
-/// turns, climbs and gusts [W], at least 0; 0 if no airspeed is known.
+/// Returns what the cruise of the model's flights takes beyond level flight straight ahead at their airspeeds, by turns,
+/// climbs and gusts [W], at least 0; 0 if no airspeed is known.
 double power_beyond_straight_flight_w(const MechanicalModel& model);
 
 }  // namespace flightwatt::mechanical

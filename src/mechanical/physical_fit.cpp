@@ -74,6 +74,7 @@ void add_value(Interval& range, double value, bool first) {
 /// The flights, bins and ranges of motion that the model rests on.
 void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flights) {
     std::vector<double> cruise_speeds;
+    std::vector<double> cruise_squares;
     std::vector<double> cruise_cubes;
     double duration_s = 0.0;
     model.load.rotors = flights.front().load.rotors;
@@ -83,6 +84,7 @@ void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flight
         model.load.payload_kg += flight.load.payload_kg / static_cast<double>(flights.size());
         model.flights.push_back(flight.flight);
         double sum = 0.0;
+        double squares = 0.0;
         double cubes = 0.0;
         double of_cruise_s = 0.0;
         for (const auto& bin : flight.bins) {
@@ -93,17 +95,21 @@ void describe_flights(PhysicalModel& model, std::span<const BinnedFlight> flight
             duration_s += bin.duration_s;
             if (bin.phase != flight::Phase::cruise) continue;
             sum += bin.airspeed_m_per_s * bin.duration_s;
+            squares += bin.airspeed_m_per_s * bin.airspeed_m_per_s * bin.duration_s;
             cubes += bin.values[PowerTerm::drag] * bin.duration_s;
             of_cruise_s += bin.duration_s;
         }
         if (!(of_cruise_s > 0.0)) continue;
         cruise_speeds.push_back(sum / of_cruise_s);
+        cruise_squares.push_back(squares / of_cruise_s);
         cruise_cubes.push_back(cubes / of_cruise_s);
     }
     model.bin_s = duration_s / static_cast<double>(model.bins);
     if (cruise_speeds.empty()) return;
     model.mean_airspeed_m_per_s = mean(cruise_speeds);
     model.cubic_mean_airspeed_m_per_s = std::cbrt(mean(cruise_cubes));
+    model.airspeed_spread_m_per_s =
+        std::sqrt(std::max(0.0, mean(cruise_squares) - std::pow(model.mean_airspeed_m_per_s, 2)));
 }
 
 /// From the differences of drift variances between flights: the relative variance of a variance is 2 / v. At most the

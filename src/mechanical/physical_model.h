@@ -120,6 +120,8 @@ struct PhysicalModel {
     double mean_airspeed_m_per_s = 0.0;       ///< of the flights' cruises, each counting the same
     /// The root of their mean cube, at which drag takes its mean power; absent in files of 0.2.
     std::optional<double> cubic_mean_airspeed_m_per_s = {};
+    /// Standard deviation of the airspeeds of the bins in cruise, without gusts; absent in older files.
+    std::optional<double> airspeed_spread_m_per_s = {};
     /// Absent where `terms` contain drag and induced drag or the flights do not determine them, and in older files.
     std::optional<SpeedTerms> speed_terms = {};
 };

@@ -142,6 +142,31 @@ MechanicalModel published() {
     return read_mechanical_model(test::source_dir() / "fits" / "mechanical" / "opterra-table1.toml");
 }
 
+TEST(PowerBeyondStraightFlight, IsNoneOfSlowAndFastFlightsStraightAhead) {
+    MechanicalModel model;
+    model.phases[flight::Phase::cruise].fourier.a0_w = 0.5 * (10.0 + 80.0);
+    model.physical.emplace();
+    model.physical->terms = {PowerTerm::drag};
+    model.physical->coefficients[PowerTerm::drag] = 0.01;
+    model.physical->mean_airspeed_m_per_s = 15.0;
+    model.physical->airspeed_spread_m_per_s = 5.0;
+    EXPECT_NEAR(power_beyond_straight_flight_w(model), 0.0, 1e-9);
+    model.phases[flight::Phase::cruise].fourier.a0_w += 7.0;
+    EXPECT_NEAR(power_beyond_straight_flight_w(model), 7.0, 1e-9);
+}
+
+TEST(PowerBeyondStraightFlight, OfLegsBetweenHoversKnowsTheirMeanAirspeed) {
+    MechanicalModel model;
+    model.physical.emplace();
+    model.physical->terms = {PowerTerm::drag, PowerTerm::constant};
+    model.physical->coefficients[PowerTerm::drag] = 0.01;
+    model.physical->coefficients[PowerTerm::constant] = 100.0;
+    model.physical->mean_airspeed_m_per_s = 2.5;  // a quarter at 10 m/s
+    model.physical->airspeed_spread_m_per_s = std::sqrt(0.25 * 100.0 - 2.5 * 2.5);
+    model.phases[flight::Phase::cruise].fourier.a0_w = 100.0 + 0.25 * 10.0;
+    EXPECT_NEAR(power_beyond_straight_flight_w(model), 0.0, 1e-9);
+}
+
 TEST(ModelCheck, SaysNothingOfThePublishedModel) { EXPECT_THAT(model_warnings(published()), IsEmpty()); }
 
 TEST(ModelCheck, TellsWhereACurveFallsBelowZero) {

@@ -48,6 +48,7 @@ TEST(PhysicalFit, KnowsTheAirspeedWhoseDragIsTheMean) {
     const auto model = fit_power_terms(flights, {PowerTerm::drag});
     EXPECT_NEAR(model.mean_airspeed_m_per_s, 15.0, 1e-9);
     EXPECT_NEAR(model.cubic_mean_airspeed_m_per_s.value(), std::cbrt(4500.0), 1e-9);
+    EXPECT_NEAR(model.airspeed_spread_m_per_s.value(), 5.0, 1e-9);
 }
 
 TEST(PhysicalFit, SaysWhatBecameOfEveryTerm) {
