@@ -222,6 +222,21 @@ std::optional<double> battery::IdentifiedFlight::*temperature_of(const std::vect
     return is_of_battery ? &battery::IdentifiedFlight::battery_start_c : &battery::IdentifiedFlight::air_temperature_c;
 }
 
+/// The coldest of those temperatures, at most like_temperature_k from each other, that are the most, of as many the
+/// warmest: over a wider span a pack that cools over the weeks, its resistance rising by some 3 % a kelvin, looks worn.
+double coldest_of_like(std::vector<double> temperatures_c) {
+    std::ranges::sort(temperatures_c);
+    double coldest_c = 0.0;
+    std::ptrdiff_t most = 0;
+    for (auto first = temperatures_c.begin(); first != temperatures_c.end(); ++first) {
+        const auto count = std::upper_bound(first, temperatures_c.end(), *first + like_temperature_k) - first;
+        if (count < most) continue;
+        most = count;
+        coldest_c = *first;
+    }
+    return coldest_c;
+}
+
 /// The uses that are like each other in temperature and charge.
 Numbers like_uses(const std::vector<PackUse>& uses, const Numbers& numbers) {
     const auto temperature_c = temperature_of(uses, numbers);
@@ -235,12 +250,12 @@ Numbers like_uses(const std::vector<PackUse>& uses, const Numbers& numbers) {
     Numbers like;
     if (charges_percent.empty()) return like;
     const double charge_percent = median(charges_percent);
-    const double usual_c = temperatures_c.empty() ? 0.0 : median(temperatures_c);
+    const double coldest_c = coldest_of_like(std::move(temperatures_c));
     for (const auto i : numbers) {
         if (!uses[i].found || !uses[i].found->resistance) continue;
         const auto& own_c = (*uses[i].found).*temperature_c;
         if (std::abs(start_charge_percent(uses[i]) - charge_percent) <= like_charge_percent &&
-            (!own_c || std::abs(*own_c - usual_c) <= like_temperature_k))
+            (!own_c || (*own_c >= coldest_c && *own_c <= coldest_c + like_temperature_k)))
             like.push_back(i);
     }
     return like;

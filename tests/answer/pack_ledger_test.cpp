@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "helpers/synthetic_discharge.h"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -157,6 +158,19 @@ TEST(PackLedger, ComparesFlightsOfLikeTemperatureAlone) {
         EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9);
         EXPECT_NEAR(*ledger.packs[0].resistance_ohm, first_ohm, 0.1 * first_ohm);
     }
+}
+
+TEST(PackLedger, DoesNotTakeTheColdOfAutumnForWear) {
+    std::vector<PackUse> uses;
+    for (std::uint64_t f = 0; f < 12; ++f) {
+        const auto weeks = static_cast<double>(f);
+        const double temperature_c = 24.0 - 2.0 * weeks;
+        uses.push_back(flown("A", 7.0 * weeks, first_ohm * std::exp(0.022 * (24.0 - temperature_c)), 120 + f));
+        uses.back().record.battery_start_c = temperature_c;
+    }
+    const auto ledger = make_pack_ledger(uses, {.capacity_ah = full_ah});
+    EXPECT_THAT(names(ledger), ElementsAre("A: healthy"));
+    EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9) << "the five flights of 24 to 16 degrees";
 }
 
 TEST(PackLedger, DividesPacksOfOtherNumbersOfCells) {
