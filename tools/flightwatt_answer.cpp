@@ -111,6 +111,8 @@ answer::FoundPack pack_of_folder(const cli::StageCall& call, const AnswerArgumen
             std::move(uses), {.capacity_ah = pack.answer.capacity_ah.value, .known = &*pack.identified});
         for (const auto& note : ledger.notes) cli::add_diagnostic(call, {Severity::note, "the pack", note});
         health = ledger.packs;
+        if (pack.answer.capacity_ah.value && pack.identified->capacity.origin != battery::CapacityOrigin::given)
+            pack.answer.capacity_ah.basis += capacity_doubt(health);
     }
     if (arguments.temperature_c) set_temperature(pack, *arguments.temperature_c, health);
     for (const auto& warning : pack.warnings) cli::warn(call, warning);

@@ -477,6 +477,12 @@ PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& opti
     return ledger;
 }
 
+std::string capacity_doubt(const std::vector<Pack>& packs) {
+    if (packs.size() > 1) return " of several packs, which may have much less: --pack NAME answers for one";
+    const bool is_doubtful = !packs.empty() && packs.front().may_be_several && packs.front().uses.size() > 1;
+    return is_doubtful ? ", if of one pack" : "";
+}
+
 std::string describe(const Pack& pack) {
     const bool is_named = pack.named_by != PackNaming::none;
     auto text = fmt::format("pack {}{}: {}: ", pack.name, is_named ? "" : " of " + pack.aircraft.front(),

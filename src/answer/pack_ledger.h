@@ -95,6 +95,10 @@ struct PackLedger {
 /// UsageError where flights draw more than LedgerOptions::capacity_ah.
 PackLedger make_pack_ledger(std::vector<PackUse> uses, const LedgerOptions& options = {});
 
+/// Returns what to add to the basis of a capacity that flights indicate: flights of packs that differ by 8 % can indicate
+/// half more than either has. Empty where they are of one pack, or a single flight.
+std::string capacity_doubt(const std::vector<Pack>& packs);
+
 /// "pack A1: watch: resistance 31 mohm (29 to 33) ..." in one line.
 std::string describe(const Pack& pack);
 

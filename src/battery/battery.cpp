@@ -141,7 +141,8 @@ std::string capacity_warning(const Battery& battery) {
     const auto& [low, high] = battery.flight_estimate->capacity_interval_ah;
     return fmt::format(
         "the capacity of {:.4g} Ah contradicts the flights, which indicate {:.3g} Ah ({:.3g} to {:.3g} Ah in 95 %): "
-        "check the pack's label, or give no capacity to use the estimate of the flights",
+        "check the pack's label, the scale of the current sensor, and whether the flights are of one pack; without a "
+        "capacity the estimate of the flights is used",
         battery.capacity_ah, battery.flight_estimate->capacity_ah, low, high);
 }
 

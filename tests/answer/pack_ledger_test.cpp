@@ -173,6 +173,19 @@ TEST(PackLedger, DoesNotTakeTheColdOfAutumnForWear) {
     EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9) << "the five flights of 24 to 16 degrees";
 }
 
+TEST(CapacityDoubt, NamesPacksThatMayBeSeveral) {
+    EXPECT_EQ(capacity_doubt({}), "");
+    std::vector<Pack> packs(1);
+    packs[0].uses = {0, 1};
+    EXPECT_EQ(capacity_doubt(packs), "") << "named, or each flight begins where another one ended";
+    packs[0].may_be_several = true;
+    EXPECT_EQ(capacity_doubt(packs), ", if of one pack");
+    packs[0].uses = {0};
+    EXPECT_EQ(capacity_doubt(packs), "");
+    packs.resize(2);
+    EXPECT_THAT(capacity_doubt(packs), HasSubstr("--pack NAME"));
+}
+
 TEST(PackLedger, DividesPacksOfOtherNumbersOfCells) {
     std::vector<PackUse> uses{flown("", 0.0, first_ohm, 1), flown("", 1.0, first_ohm, 2)};
     for (auto& voltage_v : uses[1].record.voltage_v) voltage_v *= 2.0;

@@ -78,7 +78,8 @@ TEST(BatteryWarnings, CompareTheCapacityWithTheFlights) {
     EXPECT_EQ(
         capacity_warning(pack),
         "the capacity of 5 Ah contradicts the flights, which indicate 2.05 Ah (1.74 to 3.47 Ah in 95 %): check the "
-        "pack's label, or give no capacity to use the estimate of the flights");
+        "pack's label, the scale of the current sensor, and whether the flights are of one pack; without a capacity the "
+        "estimate of the flights is used");
     EXPECT_EQ(battery_warnings(pack), std::vector{"battery: " + capacity_warning(pack)});
     for (const double outside_ah : {1.739, 3.471}) {
         pack.capacity_ah = outside_ah;
