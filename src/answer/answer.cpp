@@ -42,15 +42,8 @@ std::string power_basis(const KnownAircraft& aircraft, const Question& question)
     auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
     if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
     auto basis = "physics, from power and motion " + measured;
-    if (!aircraft.model.is_rotorcraft) return basis;
-    if (question.wind_m_per_s > 0.0) basis += "; assumed: those flights were in calm air";
-    const auto& physical = aircraft.model.physical;
-    const auto has = [&](mechanical::PowerTerm term) {
-        return std::ranges::find(physical->terms, term) != physical->terms.end();
-    };
-    if (physical && mission_airspeed_m_per_s(aircraft, question) && !has(mechanical::PowerTerm::drag) &&
-        !has(mechanical::PowerTerm::blade))
-        basis += "; assumed: as much as without airspeed, as the flights do not show what it costs";
+    if (aircraft.model.is_rotorcraft && question.wind_m_per_s > 0.0)
+        basis += "; assumed: those flights were in calm air";
     return basis;
 }
 

@@ -133,6 +133,11 @@ void add_turns_of_induced_drag(PhysicalModel& model) {
     model.coefficients[PowerTerm::turn] = model.coefficients[PowerTerm::induced];
 }
 
+bool knows_cost_of_airspeed(const PhysicalModel& model) {
+    return std::ranges::any_of(model.terms,
+                               [](PowerTerm term) { return term == PowerTerm::drag || term == PowerTerm::blade; });
+}
+
 double max_predicted_airspeed_m_per_s(const PhysicalModel& model) {
     constexpr double beyond_flown = 1.25;
     constexpr double like_hover_m_per_s = 8.0;

@@ -188,6 +188,9 @@ double max_predicted_airspeed_m_per_s(const PhysicalModel& model);
 /// term for induced drag, which rises as it flies slower; else 0.
 double min_predicted_airspeed_m_per_s(const PhysicalModel& model, bool is_rotorcraft);
 
+/// Returns whether the model's flights show what airspeed costs: the model has a term for drag, or for that of blades.
+bool knows_cost_of_airspeed(const PhysicalModel& model);
+
 /// Whether a climb or descent is at most 0.5 m/s, as gusts make it in level flight, or half more than flown.
 bool is_near_flown_climb(const PhysicalModel& model, double climb_m_per_s);
 

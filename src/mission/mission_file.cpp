@@ -36,9 +36,15 @@ std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root
 /// The held-out score of the model that predicts the power (with an airspeed or a path, that of the cruise), if its
 /// file has one.
 void find_power_model(const TomlTable& root, MissionSetup& mission) {
-    if (!mission.mechanical || !mission.mechanical->validation) return;
+    if (!mission.mechanical) return;
+    const auto& physical = mission.mechanical->physical;
+    const bool knows_airspeed = physical && (root.has("airspeed_m_per_s") || root.has("path"));
+    if (knows_airspeed && !knows_cost_of_airspeed(*physical))
+        mission.notes.emplace_back(
+            "its cruise power is assumed not to grow with the airspeed: the model's flights do not show what that costs; "
+            "flights at other airspeeds, steady for minutes, would");
+    if (!mission.mechanical->validation) return;
     const auto& validation = *mission.mechanical->validation;
-    const bool knows_airspeed = mission.mechanical->physical && (root.has("airspeed_m_per_s") || root.has("path"));
     const auto model = knows_airspeed ? "physical" : default_model(*mission.mechanical);
     const auto score = std::ranges::find(validation.scores, model, &mechanical::HeldOutScore::model);
     if (score != validation.scores.end())

@@ -125,6 +125,24 @@ TEST(AirspeedToml, NamesTheModelThatSaysThePowerAndItsError) {
     EXPECT_TRUE(read("airspeed_m_per_s = 12").setup.notes.empty());
 }
 
+TEST(AirspeedToml, SaysWhereFlightsDoNotShowWhatAirspeedCosts) {
+    const auto folder = folder_with_opterra();
+    auto model = mechanical::read_mechanical_model(folder / "opterra.toml");
+    model.physical = test::made_up_wing();
+    model.physical->terms = {mechanical::PowerTerm::constant};
+    model.physical->coefficients = {};
+    model.physical->coefficients[mechanical::PowerTerm::constant] = 100.0;
+    model.physical->covariance = {{1.0}};
+    model.physical->mean_airspeed_m_per_s = 0.0;
+    model.physical->bins = 100;
+    model.physical->bin_s = 30.0;
+    model.physical->correlation_s = 60.0;
+    write_text(folder / "constant.toml", mechanical::to_toml(model));
+    const auto notes = scheduled(on_model("constant.toml", "airspeed_m_per_s = 12"), folder / "m.toml").setup.notes;
+    EXPECT_THAT(notes, testing::Contains(testing::StartsWith("its cruise power is assumed not to grow")));
+    EXPECT_THAT(scheduled(on_model("constant.toml", ""), folder / "m.toml").setup.notes, testing::IsEmpty());
+}
+
 /// A folder with a model that knows motion, and one that does not.
 std::filesystem::path path_folder() {
     auto folder = scratch_dir();
