@@ -164,13 +164,13 @@ TEST(PackLedger, DoesNotTakeTheColdOfAutumnForWear) {
     std::vector<PackUse> uses;
     for (std::uint64_t f = 0; f < 12; ++f) {
         const auto weeks = static_cast<double>(f);
-        const double temperature_c = 24.0 - 2.0 * weeks;
-        uses.push_back(flown("A", 7.0 * weeks, first_ohm * std::exp(0.022 * (24.0 - temperature_c)), 120 + f));
+        const double temperature_c = 24.0 - 1.5 * weeks;
+        uses.push_back(flown("A", 7.0 * weeks, first_ohm * std::exp(0.025 * (24.0 - temperature_c)), 120 + f));
         uses.back().record.battery_start_c = temperature_c;
     }
     const auto ledger = make_pack_ledger(uses, {.capacity_ah = full_ah});
     EXPECT_THAT(names(ledger), ElementsAre("A: healthy"));
-    EXPECT_NEAR(*ledger.packs[0].temperature_c, 20.0, 1e-9) << "the five flights of 24 to 16 degrees";
+    EXPECT_NEAR(*ledger.packs[0].temperature_c, 19.5, 1e-9) << "the last five of 24 to 16.5 degrees";
 }
 
 TEST(CapacityDoubt, NamesPacksThatMayBeSeveral) {
