@@ -111,7 +111,7 @@ void note_trends(const cli::StageCall& call, const std::vector<report::FlightTre
     for (const auto& flight : flights)
         if (!flight.facts.start_clock_s) undated.push_back(flight.name);
     if (!undated.empty()) {
-        cli::note(call, fmt::format("in no trend, as neither clock nor name contains the date: {}",
+        cli::note(call, fmt::format("in no trend, as neither clock nor name (YY_MM_DD__hh_mm_ss) contains the date: {}",
                                     fmt::join(undated, ", ")));
     }
     const auto tested = std::ranges::count_if(trends, [](const auto& row) { return row.answer.trend.has_value(); });
