@@ -175,7 +175,7 @@ TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
 TEST(ModelFit, RefusesWhatHasNoAnswer) {
     auto flights = made_up_flights(2, 0.2, 7);
     EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight is left to fit"))
-        << "not for want of a take-off: all may have power faults";
+        << "not that a take-off is missing: power faults leave out whole flights";
     auto without = flights;
     for (auto& flight : without) flight.phases[flight::Phase::landing].reset();
     EXPECT_THAT(message_of<NoResultError>(without), HasSubstr("no flight has a landing to fit"));

@@ -26,7 +26,7 @@ namespace {
 constexpr double min_power_fraction = 0.02;  // of the largest power; less is a spare input
 // Packs of as many cells are at most as far apart: 4.2 V a cell when full, 3.15 V when empty.
 constexpr double max_voltage_difference = 0.25;
-// By the highest voltages of packs: more than 4.45 V is no full cell, less than 3.3 V is none at rest before a flight.
+// Bounds of the highest voltage of a cell in a log: above that of a full one, and below that of one that still flies.
 constexpr double full_cell_v = 4.45;
 constexpr double empty_cell_v = 3.3;
 constexpr double exceeded_by = 0.01;  // of the samples
