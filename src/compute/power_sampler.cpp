@@ -205,19 +205,21 @@ std::vector<PowerRail> ina3221_rails(const path& sysfs) {
 }
 
 /// Energy counters of Intel and AMD RAPL below class/powercap, intel-rapl:0 and below. They wrap at
-/// max_energy_range_uj.
-std::vector<PowerRail> rapl_rails(const path& sysfs) {
+/// max_energy_range_uj, and step about once a millisecond: over less than `shortest_s` there is no reading, and the next
+/// one covers that time too.
+std::vector<PowerRail> rapl_rails(const path& sysfs, double shortest_s) {
     std::vector<PowerRail> rails;
     // Not intel-rapl-mmio:0, which counts the package once more.
     for (const auto& zone : sysfs_entries(sysfs / "class/powercap", "intel-rapl:")) {
         const auto file = zone / "energy_uj";
         const auto range_uj = sysfs_number(zone / "max_energy_range_uj");
         if (!sysfs_number(file) || !range_uj) continue;
-        auto mean_power_w = [file, range_uj = *range_uj, last_uj = 0.0,
+        auto mean_power_w = [file, shortest_s, range_uj = *range_uj, last_uj = 0.0,
                              last = std::optional<Clock::time_point>()](Clock::time_point now) mutable {
+            const double time_s = last ? std::chrono::duration<double>(now - *last).count() : 0.0;
+            if (last && time_s < shortest_s) return std::numeric_limits<double>::quiet_NaN();
             const double now_uj = require_sysfs_number(file);
             const double energy_uj = now_uj - last_uj + (now_uj < last_uj ? range_uj : 0.0);
-            const double time_s = last ? std::chrono::duration<double>(now - *last).count() : 0.0;
             last_uj = now_uj;
             last = now;
             return time_s > 0.0 ? units::joule_from_microjoule(energy_uj) / time_s
@@ -403,7 +405,7 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
 PowerSampler open_sampler(const SamplerSettings& settings) {
     if (settings.kind == SamplerKind::command) return open_command_sampler(settings);
     const std::vector<Sensor> sensors{{SamplerKind::ina3221, ina3221_rails(settings.sysfs)},
-                                      {SamplerKind::rapl, rapl_rails(settings.sysfs)}};
+                                      {SamplerKind::rapl, rapl_rails(settings.sysfs, settings.interval_s / 2.0)}};
     for (const auto& sensor : sensors) {
         const bool is_wanted = settings.kind == SamplerKind::automatic || settings.kind == sensor.kind;
         if (is_wanted && !sensor.rails.empty()) return sampler_of(sensor, settings.rails);

@@ -142,6 +142,28 @@ TEST_F(SensorTree, RaplCountsPackagesOnce) {
     EXPECT_LE(readings.front().power_w, 0.5 / 0.05);
 }
 
+TEST_F(SensorTree, RaplCountsNoEnergyOverAMomentAsThatOfAnInterval) {
+    const path zone = "class/powercap/intel-rapl:0";
+    put(zone / "name", "package-0");
+    put(zone / "energy_uj", "0");
+    put(zone / "max_energy_range_uj", "1000000000");
+    auto given = settings();
+    given.interval_s = 0.1;
+    const auto sampler = open_sampler(given);
+    const auto before = std::chrono::steady_clock::now();
+    EXPECT_TRUE(sampler.read().empty());
+    const auto at_once = sampler.read();
+    if (std::chrono::steady_clock::now() - before < std::chrono::milliseconds(50)) {
+        EXPECT_TRUE(at_once.empty()) << "the counter has not stepped: 0 W is of no interval";
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    put(zone / "energy_uj", "1200000");
+    const auto readings = sampler.read();
+    ASSERT_EQ(readings.size(), 1U);
+    EXPECT_LE(readings.front().power_w, 12.0);
+    EXPECT_GE(readings.front().power_w, 1.2 / std::chrono::duration<double>(readings.front().time - before).count());
+}
+
 TEST_F(SensorTree, NoSensorAndBrokenSensors) {
     std::filesystem::create_directories(root);
     EXPECT_THROW(open_sampler(settings()), NoResultError);
