@@ -27,6 +27,7 @@ struct PowerProfile {
     std::vector<double> power_w;                ///< of every node; the last parameter runs fastest
     std::vector<double> standard_error_w = {};  ///< of every node; empty unless all are known
     double excluded_idle_w = 0.0;  ///< of the idle computer, which the powers are above; 0: they include it
+    double included_idle_w = 0.0;  ///< of the idle computer, which the powers include; 0: none, or not known
 };
 
 /// The grid of `nodes`, in any order. Throws InputError for no nodes, for a duplicate node (at its second occurrence),

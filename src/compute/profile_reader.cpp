@@ -19,9 +19,10 @@ constexpr std::string_view power_column = "power_w";
 constexpr std::string_view ignored_column = "_";
 constexpr std::string_view error_column = "standard_error_w";
 constexpr std::string_view total_column = "total_power_w";
+constexpr std::string_view above_idle_column = "above_idle_power_w";
 /// Columns that may follow power_w in a CSV of `flightwatt profile`.
-constexpr std::string_view evidence_columns[] = {
-    error_column, total_column, "above_idle_power_w", "duration_s", "energy_j", "samples", "repeats", "source"};
+constexpr std::string_view evidence_columns[] = {error_column, total_column, above_idle_column, "duration_s",
+                                                 "energy_j",   "samples",    "repeats",         "source"};
 
 void refuse_bad_names(const std::vector<std::string>& parameters, const Location& where) {
     std::set<std::string_view> seen;
@@ -52,7 +53,8 @@ struct ProfileColumns {
     std::vector<std::size_t> parameter_columns;
     std::size_t power = 0;
     std::optional<std::size_t> standard_error = {};
-    std::optional<std::size_t> total = {};  ///< of the whole computer
+    std::optional<std::size_t> total = {};       ///< of the whole computer
+    std::optional<std::size_t> above_idle = {};  ///< of the component alone
 };
 
 PowerProfile profile_of(const CsvTable& table, std::size_t first_row, const ProfileColumns& columns) {
@@ -67,10 +69,10 @@ PowerProfile profile_of(const CsvTable& table, std::size_t first_row, const Prof
         nodes.push_back(std::move(node));
     }
     auto profile = make_power_profile(table.file, columns.parameters, std::move(nodes));
-    if (columns.total) {
-        const auto& row = table.rows[first_row];
-        profile.excluded_idle_w = cell_number(table, row, *columns.total) - cell_number(table, row, columns.power);
-    }
+    const auto& row = table.rows[first_row];
+    const double power_w = cell_number(table, row, columns.power);
+    if (columns.total) profile.excluded_idle_w = cell_number(table, row, *columns.total) - power_w;
+    if (columns.above_idle) profile.included_idle_w = power_w - cell_number(table, row, *columns.above_idle);
     return profile;
 }
 
@@ -88,6 +90,7 @@ ProfileColumns columns_of_header(const CsvTable& table) {
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
         const auto& [name, column] = header.cells[i];
         if (name == total_column) columns.total = i;
+        if (name == above_idle_column) columns.above_idle = i;
         if (i < columns.power) {
             columns.parameters.push_back(name);
             columns.parameter_columns.push_back(i);

@@ -45,7 +45,7 @@ std::string row_of(const NodeEstimate& node, const std::optional<PowerEstimate>&
 std::string idle_csv(const PowerEstimate& idle) {
     return fmt::format(
         "# Power of the idle computer, before the components ran\n"
-        "power_w,standard_error_w,duration_s,energy_j,samples\n{:.6f},{},{:.6f},{:.6f},{}\n",
+        "power_w,standard_error_w,above_idle_power_w,duration_s,energy_j,samples\n{:.6f},{},0,{:.6f},{:.6f},{}\n",
         idle.power_w, number_or(idle.standard_error_w, 6, ""), idle.duration_s, idle.energy_j, idle.samples);
 }
 

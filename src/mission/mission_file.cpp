@@ -19,6 +19,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace flightwatt::mission {
 namespace {
@@ -195,6 +196,48 @@ void note_idle_not_run(const Schedule& schedule, MissionSetup& mission) {
                     above->name, without_s, above->profile.excluded_idle_w));
 }
 
+/// The idle computer in the powers of those of `components` that include it.
+struct IncludedIdle {
+    std::vector<std::string> names;
+    double largest_w = 0.0;
+
+    void add(const compute::Component& component) {
+        if (component.profile.included_idle_w <= 0.0) return;
+        names.push_back(component.name);
+        largest_w = std::max(largest_w, component.profile.included_idle_w);
+    }
+};
+
+std::string idle_counted_twice(const IncludedIdle& idle, const std::string& when) {
+    return fmt::format(
+        "the profiles of {} include the idle computer: {} its {:.3g} W count {}, and the mission lands "
+        "with less charge than it would; profile with above_idle = true, and add idle.csv as a component",
+        fmt::join(idle.names, " and "), when, idle.largest_w,
+        idle.names.size() == 2 ? "twice" : fmt::format("{} times", idle.names.size()));
+}
+
+/// Adds a note where several profiles that may run at the same time include the idle computer.
+void note_idle_twice(MissionSetup& mission) {
+    IncludedIdle idle;
+    for (const auto& component : mission.compute.components) idle.add(component);
+    if (idle.names.size() > 1) mission.notes.push_back(idle_counted_twice(idle, "where they run at the same time,"));
+}
+
+/// The same where the schedule runs them at the same time.
+void note_idle_run_twice(const Schedule& schedule, MissionSetup& mission) {
+    IncludedIdle most;
+    double several_s = 0.0;
+    for (const auto& segment : schedule) {
+        IncludedIdle idle;
+        for (const auto& [index, qos] : segment.run) idle.add(mission.compute.components[index]);
+        if (idle.names.size() < 2) continue;
+        several_s += segment.duration_s();
+        if (idle.names.size() > most.names.size()) most = std::move(idle);
+    }
+    if (several_s > 0.0)
+        mission.notes.push_back(idle_counted_twice(most, fmt::format("for {:.0f} s of the schedule", several_s)));
+}
+
 void read_components(const TomlTable& root, MissionSetup& mission) {
     const auto components = root.optional_table("components");
     if (!components) return;
@@ -300,6 +343,7 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     }
     if (lacks_schedule || root.has("plan") || adaptive || chooses_lines) {
         note_missing_idle(setup);
+        note_idle_twice(setup);
         PlanningProblem problem{std::move(setup), {}, {}, adaptive, std::move(survey)};
         problem.plan = read_plan_settings(root, problem.setup.compute);
         problem.fixed = resolve_fixed_segments(entries, problem.setup.duration_s);
@@ -316,6 +360,7 @@ MissionVariant with_read_schedule(const TomlTable& root, const MissionReadOption
     auto schedule = resolve_schedule(entries, entries_s);
     if (is_stretched) schedule = rescale_to_flown_durations(std::move(schedule), stated_s, setup.duration_s);
     note_idle_not_run(schedule, setup);
+    note_idle_run_twice(schedule, setup);
     return Mission{std::move(setup), std::move(schedule)};
 }
 

@@ -177,5 +177,14 @@ TEST(ExcludedIdle, IsTheTotalLessThePower) {
     EXPECT_EQ(excluded_w("200,100\n1,8\n", parameters({"fps"})), 0.0);
 }
 
+TEST(IncludedIdle, IsThePowerLessThatAboveIdle) {
+    const auto included_w = [folder = test::scratch_dir()](const char* text) {
+        return read_power_profile(write_text(folder / "p.csv", text)).included_idle_w;
+    };
+    EXPECT_DOUBLE_EQ(included_w("fps,power_w,total_power_w,above_idle_power_w\n1,8,8,5\n2,9,9,6\n"), 3.0);
+    EXPECT_EQ(included_w("fps,power_w,total_power_w,above_idle_power_w\n1,5,8,5\n"), 0.0);
+    EXPECT_EQ(included_w("fps,power_w,total_power_w\n1,8,8\n"), 0.0) << "it is not known";
+}
+
 }  // namespace
 }  // namespace flightwatt::compute

@@ -69,7 +69,9 @@ TEST(LayerTwo, IsReadByMissions) {
     const auto made = outcome();
     write_profiles(made, specification(true), folder);
     EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "load.csv"), {1.25}), 3.5);
-    EXPECT_DOUBLE_EQ(power_w(read_power_profile(folder / "idle.csv"), {}), 2.0);
+    const auto idle = read_power_profile(folder / "idle.csv");
+    EXPECT_DOUBLE_EQ(power_w(idle, {}), 2.0);
+    EXPECT_DOUBLE_EQ(idle.included_idle_w, 2.0) << "not to be added to a profile that includes it";
 }
 
 TEST(WriteProfiles, LeavesNoFileOfAComponentWithoutPower) {

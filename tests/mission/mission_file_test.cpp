@@ -2,6 +2,7 @@
 
 #include "helpers/rejected.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -334,6 +335,53 @@ run = { )" + run + " }\n",
             "of that: add the idle.csv of its folder as a component, and run it");
     }
     EXPECT_EQ(notes(declared, "idle = {}").size(), 1U) << "it runs while the software does not";
+}
+
+TEST(MissionFile, WarnsWhereTheIdleComputerCountsTwice) {
+    const auto folder = mission_folder();
+    const std::string columns = "power_w,total_power_w,above_idle_power_w\n";
+    write_text(folder / "whole.csv", "fps," + columns + "10,22,22,20\n30,42,42,40\n");
+    write_text(folder / "other.csv", columns + "5,5,3\n");
+    write_text(folder / "above.csv", columns + "3,5,3\n");
+    write_text(folder / "idle.csv", "power_w,above_idle_power_w\n2,0\n");
+    const auto mission = [&](const std::string& other, const std::string& schedule) {
+        return parse_mission(R"(mechanical = "none"
+battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }
+duration_s = { takeoff = 0, cruise = 100, landing = 0 }
+[components]
+detection = { profile = "whole.csv" }
+other = { profile = ")" + other + "\" }\n" +
+                                 schedule,
+                             folder / "m.toml");
+    };
+    const std::string together = R"([[schedule]]
+phase = "cruise"
+middle = 60
+run = { detection = { fps = 10 }, other = {} }
+[[schedule]]
+otherwise = true
+run = { other = {} }
+)";
+    const auto notes = [&](const char* other) { return setup_of(mission(other, together)).notes; };
+    for (const auto* other : {"other.csv", "idle.csv"}) {
+        ASSERT_EQ(notes(other).size(), 1U) << other;
+        EXPECT_EQ(notes(other)[0],
+                  "the profiles of detection and other include the idle computer: for 60 s of the schedule its 2 W "
+                  "count twice, and the mission lands with less charge than it would; profile with above_idle = true, "
+                  "and add idle.csv as a component");
+    }
+    EXPECT_TRUE(notes("above.csv").empty());
+    const auto planned = parse_mission(R"(mechanical = "none"
+battery = { voltage_v = 4, resistance_ohm = 0, capacity_ah = 1 }
+duration_s = { takeoff = 0, cruise = 100, landing = 0 }
+[components]
+detection = { profile = "whole.csv" }
+other = { profile = "other.csv" }
+[plan]
+)",
+                                       folder / "m.toml", {true});
+    ASSERT_EQ(setup_of(planned).notes.size(), 1U);
+    EXPECT_THAT(setup_of(planned).notes[0], testing::HasSubstr("where they run at the same time, its 2 W count twice"));
 }
 
 TEST(MissionFile, RefusesAMissionThatDoesNotFitItsParts) {
