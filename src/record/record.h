@@ -37,6 +37,7 @@ template <typename R>
 struct Field : FieldText {
     std::function<Json(const R&)> get = {};
     std::function<void(const Json&, R&)> read = {};  ///< of members that can be read back
+    std::function<bool(const R&)> is_there = {};     ///< an optional key is then written, even if null
 
     Field reading(std::function<void(const Json&, R&)> reader) && {
         this->read = std::move(reader);
@@ -170,6 +171,11 @@ auto embedded(F get, std::initializer_list<std::string_view> without = {}) {
             const S* part = get(record);
             return part == nullptr ? Json() : value(*part);
         };
+        if (!inner.is_there) continue;
+        field.is_there = [get, is_there = inner.is_there](const R& record) {
+            const S* part = get(record);
+            return part != nullptr && is_there(*part);
+        };
     }
     return fields;
 }
@@ -198,7 +204,11 @@ Fields<R> embedded(S R::*member, std::initializer_list<std::string_view> without
 template <typename F>
 auto embedded_if_any(F get, std::initializer_list<std::string_view> without = {}) {
     auto fields = embedded(get, without);
-    for (auto& field : fields) field.is_optional = true;
+    for (auto& field : fields) {
+        if (field.is_optional) continue;  // absent for reasons of its own
+        field.is_optional = true;
+        field.is_there = [get](const auto& record) { return get(record) != nullptr; };
+    }
     return fields;
 }
 
@@ -229,7 +239,8 @@ Json fields_json(const Fields<R>& fields, const R& record) {
     for (const auto& field : fields) {
         if (!field.in_json) continue;
         auto value = field.get(record);
-        if (!field.is_optional || !value.is_null()) json[field.key] = std::move(value);
+        if (!field.is_optional || !value.is_null() || (field.is_there && field.is_there(record)))
+            json[field.key] = std::move(value);
     }
     return json;
 }

@@ -58,6 +58,31 @@ TEST(Record, IsWrittenAsJsonInTheOrderOfItsFields) {
                                            R"("complete":false,"samples":0,"power_w":[]})");
 }
 
+/// A record that may have drawn flights, of which nothing need be known.
+struct Drawn {
+    int samples = 0;
+    std::optional<double> probability;
+};
+struct Mission {
+    std::optional<Drawn> drawn;
+};
+struct Outer {
+    Mission mission;
+};
+
+Fields<Drawn> record_fields(const Drawn*) {
+    return {field("samples", &Drawn::samples, "their number"), field("probability", &Drawn::probability, "or unknown")};
+}
+Fields<Mission> record_fields(const Mission*) { return list_fields<Mission>(embedded_if_any(&Mission::drawn)); }
+Fields<Outer> record_fields(const Outer*) { return list_fields<Outer>(embedded(&Outer::mission)); }
+
+TEST(Record, WritesNullForWhatIsUnknownOfARecordThatIsThere) {
+    EXPECT_EQ(record_json(Mission{}).dump(), "{}");
+    EXPECT_EQ(record_json(Mission{Drawn{20, std::nullopt}}).dump(), R"({"samples":20,"probability":null})");
+    EXPECT_EQ(record_json(Outer{}).dump(), "{}");
+    EXPECT_EQ(record_json(Outer{{Drawn{20, std::nullopt}}}).dump(), R"({"samples":20,"probability":null})");
+}
+
 TEST(Record, ReadsItsMembersBack) {
     Whole read;
     read_record(record_json(example()), read);

@@ -224,7 +224,7 @@ export interface MissionSummary {
   seed?: number;
   final_soc_mean_percent?: number | null;
   final_soc_sd_percent?: number | null;
-  final_soc_quantiles_percent?: Record<string, number>;
+  final_soc_quantiles_percent?: Record<string, number> | null;
   varied?: string[];
   fixed?: string[];
   with_capacity_of_flights?: { capacity_ah: number; final_soc_percent: number | null; fails_at_s: number | null; keeps_reserve: boolean };
