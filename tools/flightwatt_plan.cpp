@@ -16,6 +16,7 @@
 #include "stages.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -233,7 +234,8 @@ int print_limit(const cli::StageCall& call, const PlanArguments& arguments, cons
                 const std::string& question, const std::string& unit, const mission::FeasibilityLimit& most) {
     cli::warn_of_setup(call, mission);
     const bool in_minutes = unit == "s" && !call.output && screen_of(call).is_terminal;
-    const auto value = fmt::format("{:.6f} {}\n", most.value, unit);
+    const double feasible = std::floor(most.value * 1e6) / 1e6;  // must land as printed
+    const auto value = fmt::format("{:.6f} {}\n", feasible, unit);
     cli::write_result(call, in_minutes ? duration_text(most.value) + "\n" : value);
     if (call.json) {
         cli::print_json(call, PlanLimit{&mission, question, &most, arguments.probability});

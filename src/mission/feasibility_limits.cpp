@@ -357,17 +357,18 @@ InfeasibilityReport infeasibility_report(const PlanningProblem& problem, const M
 }
 
 std::string describe(const MissionSetup& mission, const InfeasibilityReport& report) {
-    std::vector<std::string> remedies;
+    std::vector<std::string> remedies;  // they must land as printed
     if (report.cruise_s) {
-        const double cruise_s = std::floor(*report.cruise_s * 10.0) / 10.0;  // must land as printed
+        const double cruise_s = std::floor(*report.cruise_s * 10.0) / 10.0;
         remedies.push_back(fmt::format("a cruise of at most {} (duration_s = {{ cruise = {:.1f} }})",
                                        duration_text(cruise_s), cruise_s));
     }
     if (report.reserve_soc_percent)
-        remedies.push_back(fmt::format("a reserve of at most {:.2f} %", *report.reserve_soc_percent));
+        remedies.push_back(
+            fmt::format("a reserve of at most {:.2f} %", std::floor(*report.reserve_soc_percent * 100.0) / 100.0));
     if (report.capacity_ah) {
-        remedies.push_back(fmt::format("a battery of {:.3f} Ah instead of {:.3f} Ah", *report.capacity_ah,
-                                       mission.battery.capacity_ah));
+        remedies.push_back(fmt::format("a battery of {:.3f} Ah instead of {:.3f} Ah",
+                                       std::ceil(*report.capacity_ah * 1000.0) / 1000.0, mission.battery.capacity_ah));
     }
     auto text = fmt::format(
         "no schedule lands with the reserve: the one that demands least energy is {}short by {:.2f} points "

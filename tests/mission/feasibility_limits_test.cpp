@@ -258,5 +258,15 @@ TEST(InfeasibilityReport, NamesTheCruiseToState) {
                 testing::HasSubstr("do: a cruise of at most 10 min 28 s (duration_s = { cruise = 628.4 })"));
 }
 
+TEST(InfeasibilityReport, NamesAReserveAndACapacityThatSufficeAsPrinted) {
+    InfeasibilityReport report;
+    report.reserve_soc_percent = 12.8258;
+    report.capacity_ah = 3.9431;
+    MissionSetup mission;
+    mission.battery.capacity_ah = 3.2;
+    EXPECT_THAT(describe(mission, report),
+                testing::HasSubstr("a reserve of at most 12.82 %, a battery of 3.944 Ah instead of 3.200 Ah"));
+}
+
 }  // namespace
 }  // namespace flightwatt::mission
