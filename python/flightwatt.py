@@ -116,8 +116,12 @@ def _table(text):
 
 
 def table(stage, *inputs, **options):
-    """The CSV that a stage writes to its standard output, as a DataFrame."""
-    return _table(run(stage, *inputs, **options))
+    """The CSV that a stage writes to its standard output, as a DataFrame. ValueError: it prints something else."""
+    text = run(stage, *inputs, **options)
+    header = next((line for line in text.splitlines() if not line.startswith("#")), "")
+    if "," not in header:
+        raise ValueError(f"flightwatt {stage} prints no CSV here: read the file of output=\"FILE.csv\" with pandas.read_csv")
+    return _table(text)
 
 
 def series(log, **options):

@@ -59,6 +59,10 @@ class Tables(unittest.TestCase):
         curve = fw.curve(MISSION)
         self.assertAlmostEqual(curve.soc_percent.iloc[-1], fw.simulate(MISSION)["final_soc_percent"], places=6)
 
+    def test_a_stage_that_prints_text_is_no_table(self):
+        with self.assertRaisesRegex(ValueError, "compare prints no CSV here: read the file of output="):
+            fw.table("compare", MISSION, quiet=True)
+
     def test_a_batch_is_read_back(self):
         with tempfile.TemporaryDirectory() as folder:
             fw.batch(SAMPLE, SECOND, output=folder)
