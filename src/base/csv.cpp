@@ -109,9 +109,13 @@ class LineSplitter {
 
 [[noreturn]] void refuse_length(const std::string& file, const CsvRowView& row, std::size_t width, char separator) {
     const bool are_decimals = separator == ',' && row.cells.size() > width;
+    const bool has_semicolons =
+        std::ranges::any_of(row.cells, [](const auto& cell) { return cell.text.find(';') != cell.text.npos; });
     throw InputError({file, row.line},
                      fmt::format("{} cells, expected {} as in the first line", row.cells.size(), width),
-                     are_decimals ? "if commas are its decimals too, separate the cells by semicolons" : "");
+                     !are_decimals    ? ""
+                     : has_semicolons ? "separate the cells by commas, and write decimals with a point"
+                                      : "if commas are its decimals too, separate the cells by semicolons");
 }
 
 // The dialect of a table of another program is found in steps: line ends, a line sep=, the header, the separator,

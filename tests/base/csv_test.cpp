@@ -105,6 +105,7 @@ TEST(Csv, RefusesBadTablesWithTheirPlace) {
     expect_error("time_s,power_w\n1,nan\n", 2, 3, "power_w is not a finite number: 'nan'");
     expect_error("time_s,power_w\n1,2\n1,12.5x\n", 3, 3, "'12.5x'");
     expect_error("time_s,power_w\n1\n", 2, 0, "1 cells, expected 2");
+    expect_error("fps;power_w\n1;2,5\n", 2, 0, "separate the cells by commas, and write decimals with a point");
     expect_error("time_s,power_w\n1,\"2\n", 2, 3, "a quote is opened and not closed");
     expect_error("time_s,power_kw\n1,2\n", 1, 0, "has no column 'power_w'");
 }
