@@ -265,9 +265,12 @@ With --path-from the path of a log's cruise instead, as waypoints for a mission 
 airspeed on the way there and how long it took. Altitudes are above the ground, if the log shows where that is.)"};
     stage.next = [](const auto& call) {
         if (call.inputs.empty()) return "waypoints = \"{}\" in the [path] of a mission";
-        return call.inputs.front().ends_with(".toml")
-                   ? "flightwatt simulate {in}"
-                   : "flightwatt new-mission --model MODEL.toml --battery PACK.toml --plan {in} -o mission.toml";
+        if (!call.inputs.front().ends_with(".toml"))
+            return "flightwatt new-mission --model MODEL.toml --battery PACK.toml --plan {in} -o mission.toml";
+        const auto mission = mission::read_mission(call.inputs.front(), {.allow_unplanned = true});
+        const auto* problem = std::get_if<mission::PlanningProblem>(&mission);
+        const bool is_planned_first = problem != nullptr && !problem->adaptive && !problem->setup.packs;
+        return is_planned_first ? "flightwatt plan {in} -o planned.toml" : "flightwatt simulate {in}";
     };
     stage.json_schema = cli::document_schema<PathOutput, PlanFileOutput, FlightPathOutput>;
     stage.min_inputs = 0;
