@@ -24,7 +24,7 @@ void expect_error(const std::string& text, std::size_t line, std::size_t column,
     } catch (const InputError& error) {
         EXPECT_EQ(error.where().line, line) << text;
         EXPECT_EQ(error.where().column, column) << text;
-        EXPECT_THAT(error.what(), HasSubstr(message)) << text;
+        EXPECT_THAT(error.what() + (" " + error.hint()), HasSubstr(message)) << text;
     }
 }
 

@@ -144,6 +144,7 @@ MechanicalModel published() {
 
 TEST(PowerBeyondStraightFlight, IsNoneOfSlowAndFastFlightsStraightAhead) {
     MechanicalModel model;
+    model.phases[flight::Phase::cruise].duration_s = 600.0;
     model.phases[flight::Phase::cruise].fourier.a0_w = 0.5 * (10.0 + 80.0);
     model.physical.emplace();
     model.physical->terms = {PowerTerm::drag};
@@ -157,14 +158,15 @@ TEST(PowerBeyondStraightFlight, IsNoneOfSlowAndFastFlightsStraightAhead) {
 
 TEST(PowerBeyondStraightFlight, OfLegsBetweenHoversKnowsTheirMeanAirspeed) {
     MechanicalModel model;
+    model.phases[flight::Phase::cruise].duration_s = 600.0;
     model.physical.emplace();
     model.physical->terms = {PowerTerm::drag, PowerTerm::constant};
     model.physical->coefficients[PowerTerm::drag] = 0.01;
     model.physical->coefficients[PowerTerm::constant] = 100.0;
     model.physical->mean_airspeed_m_per_s = 2.5;  // a quarter at 10 m/s
     model.physical->airspeed_spread_m_per_s = std::sqrt(0.25 * 100.0 - 2.5 * 2.5);
-    model.phases[flight::Phase::cruise].fourier.a0_w = 100.0 + 0.25 * 10.0;
-    EXPECT_NEAR(power_beyond_straight_flight_w(model), 0.0, 1e-9);
+    model.phases[flight::Phase::cruise].fourier.a0_w = 103.0 + 0.25 * 10.0;
+    EXPECT_NEAR(power_beyond_straight_flight_w(model), 3.0, 1e-9);
 }
 
 TEST(ModelCheck, SaysNothingOfThePublishedModel) { EXPECT_THAT(model_warnings(published()), IsEmpty()); }
