@@ -153,14 +153,17 @@ void write_strips(const PatternWriter& writer, const Polygon& corners, const Sur
 
 /// Appends the lines of one spacing over an area that is divided.
 void write_cells(const PatternWriter& writer, const SurveyedArea& area, const SurveyLayout& layout,
-                 SurveyPlan& survey) {
+                 const std::optional<LocalPosition>& start, SurveyPlan& survey) {
     if (layout.strips.size() > 1)
         throw InputError(writer.like.where,
                          "lines of several spacings do not fit an area of several polygons, or with notches or holes",
                          "give one spacing_m, or divide the area into simple ones");
     const auto& strip = layout.strips.front();
-    const auto lines = write_area_survey(writer, area, strip.spacing_m, layout.heading_deg);
-    if (ClosedZones(area.closed, 0.0).are_crossed(lines.back().to, area.areas.front().front()))
+    const auto lines = write_area_survey(writer, area, strip.spacing_m, layout.heading_deg, start);
+    const ClosedZones zones(area.closed, 0.0);
+    if (start && zones.are_crossed(*start, *survey.entries.front().place))
+        survey.not_flown.emplace_back("the straight way from the start crosses a zone that is not to be flown over");
+    if (zones.are_crossed(lines.back().to, start.value_or(lines.front().from)))
         survey.not_flown.emplace_back("the straight way back to the start crosses a zone that is not to be flown over");
     auto& cover = survey.strips.emplace_back();
     cover.area_m2 = open_area_m2(area, layout.heading_deg);
@@ -174,7 +177,8 @@ void write_cells(const PatternWriter& writer, const SurveyedArea& area, const Su
 
 }  // namespace
 
-SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout) {
+SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout,
+                      const std::optional<GeodeticPosition>& start) {
     const auto outlines =
         plan_format(text) == PlanFormat::flight_plan ? kml_area(text, file) : geojson_area(text, file);
     const auto area = local_area(outlines, file);
@@ -186,8 +190,11 @@ SurveyPlan parse_area(std::string_view text, const std::string& file, const Surv
     const PatternWriter writer{like, survey.entries};
     const auto finest = std::ranges::min(layout.strips, {}, &SurveyStrip::spacing_m);
     survey.is_divided = is_divided(area, finest.spacing_m, layout.heading_deg, like.where);
+    survey.has_zones = !area.closed.empty();
+    const auto from =
+        start ? std::optional(to_local(*start, outlines.areas.front().front())) : std::optional<LocalPosition>();
     if (survey.is_divided)
-        write_cells(writer, area, layout, survey);
+        write_cells(writer, area, layout, from, survey);
     else
         write_strips(writer, area.areas.front(), layout, survey);
     for (auto& entry : survey.entries) {

@@ -37,12 +37,14 @@ struct SurveyPlan : PlanEntries {
     std::vector<double> line_to;     ///< part of the width up to which each line covers, in the order of flight
     std::vector<StripCover> strips;  ///< those of the layout
     bool is_divided = false;         ///< by notches, holes or zones, or into several polygons: lines of one spacing
+    bool has_zones = false;          ///< holes or zones, which are not to be flown over
 };
 
 /// Plans lines over the polygons of a GeoJSON or KML file, on the course of the layout and back, with half circles between
-/// them, around holes and polygons that are not to be flown over (docs/missions.md). Throws InputError, placed in the
-/// file, for an area without lines, one that these zones enclose, and a layout of several strips over an area that
-/// notches, holes or zones divide.
-SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout);
+/// them, around holes and polygons that are not to be flown over (docs/missions.md). The flight begins at `start`; without
+/// one at the first line. Throws InputError, placed in the file, for an area without lines, one that these zones enclose,
+/// and a layout of several strips over an area that notches, holes or zones divide.
+SurveyPlan parse_area(std::string_view text, const std::string& file, const SurveyLayout& layout,
+                      const std::optional<GeodeticPosition>& start = std::nullopt);
 
 }  // namespace flightwatt::path

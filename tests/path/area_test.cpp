@@ -83,6 +83,30 @@ TEST(Areas, HaveHolesAndZonesThatAreNotFlownOver) {
 }
 
 /// Strips are of the width in the order of flight; a strip cut at the end of a line has the same lines.
+/// Only the way back to the first corner was looked at, wherever the flight starts.
+TEST(Areas, AreReachedAroundZonesFromWhereTheFlightStarts) {
+    constexpr auto wall = "[[7.996,46.999],[7.998,46.999],[7.998,47.005],[7.996,47.005],[7.996,46.999]]";
+    const auto with_zone = [](const char* zone) {
+        return fmt::format(
+            R"({{"type":"FeatureCollection","features":[
+{{"type":"Feature","geometry":{{"type":"Polygon","coordinates":[{}]}},"properties":{{}}}},
+{{"type":"Feature","geometry":{{"type":"Polygon","coordinates":[{}]}},"properties":{{"no_fly":true}}}}]}})",
+            ring, zone);
+    };
+    const GeodeticPosition home{47.002, 7.99};
+    const auto behind = parse_area(with_zone(wall), "a", {0.0, {{20.0}}}, home);
+    EXPECT_EQ(behind.not_flown, std::vector<std::string>{
+                                    "the straight way back to the start crosses a zone that is not to be flown over"});
+    EXPECT_LT(behind.entries.front().geographic->latitude_deg, 46.999) << "around the zone";
+    EXPECT_TRUE(parse_area(with_zone(wall), "a", {0.0, {{20.0}}}).not_flown.empty());
+    EXPECT_TRUE(behind.has_zones);
+    // A zone over the first corner was refused as one that encloses a part of the area.
+    constexpr auto corner = "[[7.999,46.999],[8.001,46.999],[8.001,47.001],[7.999,47.001],[7.999,46.999]]";
+    EXPECT_EQ(parse_area(with_zone(corner), "a", {0.0, {{20.0}}}).line_to.size(), 20U);
+    const auto inside = parse_area(with_zone(corner), "a", {0.0, {{20.0}}}, GeodeticPosition{47.0, 8.0});
+    EXPECT_EQ(inside.not_flown.size(), 2U) << "the ways there and back";
+}
+
 TEST(Areas, AreCoveredByStrips) {
     for (const double heading_deg : {0.0, 180.0, 90.0}) {
         const auto whole = parse_area(geojson(ring), "a", {heading_deg, {{50.0}}});

@@ -308,7 +308,7 @@ path::PlanEntries read_planned(const TomlTable& path, const path::Wind& wind, bo
     if (path.has("area")) {
         const auto file = named_file(path, "area");
         const auto layout = mission.survey->layout;
-        auto survey = path::parse_area(read_file(file), file.string(), layout);
+        auto survey = path::parse_area(read_file(file), file.string(), layout, defaults.geographic_start);
         mission.survey = read_coverage(path, layout, survey);
         if (survey.is_divided && is_chosen(path))
             mission.notes.emplace_back(

@@ -128,7 +128,7 @@ double open_area_m2(const SurveyedArea& area, double course_deg) {
 }
 
 std::vector<SurveyLine> write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m,
-                                          double course_deg) {
+                                          double course_deg, const std::optional<LocalPosition>& start) {
     const ClosedZones kept_away(area.closed, spacing_m / 2.0);
     const ClosedZones zones(area.closed, 0.0);
     auto cells = survey_cells(area.areas, kept_away, spacing_m, course_deg, writer.like.where);
@@ -144,11 +144,13 @@ std::vector<SurveyLine> write_area_survey(const PatternWriter& writer, const Sur
         for (std::size_t i = 0; i < lines.size(); ++i) {
             if (i > 0 && is_open(zones, lines[i - 1], lines[i].from, spacing_m)) {
                 writer.turn_onto(lines[i - 1], lines[i].from, spacing_m);
-            } else {
-                auto way = kept_away.way_around(at, lines[i].from);
-                if (!way) way = zones.way_around(at, lines[i].from);  // from a place that is nearer
-                if (!way) throw InputError(writer.like.where, "its zones that are not flown over enclose a part of it");
-                for (const auto& corner : *way) writer.fly_to(corner);
+            } else if (!flown.empty() || start) {
+                const auto from = flown.empty() ? *start : at;
+                auto way = kept_away.way_around(from, lines[i].from);
+                if (!way) way = zones.way_around(from, lines[i].from);  // from a place that is nearer
+                if (!way && !flown.empty())
+                    throw InputError(writer.like.where, "its zones that are not flown over enclose a part of it");
+                for (const auto& corner : way.value_or(std::vector<LocalPosition>{})) writer.fly_to(corner);
             }
             writer.fly_to(lines[i].from);
             writer.fly_to(lines[i].to);

@@ -2,6 +2,7 @@
 
 #include "path/coverage/closed_zones.h"
 
+#include <optional>
 #include <vector>
 
 namespace flightwatt::path {
@@ -37,9 +38,10 @@ bool is_divided(const SurveyedArea& area, double spacing_m, double course_deg, c
 double open_area_m2(const SurveyedArea& area, double course_deg);
 
 /// Appends the lines of the areas, with turns between them as PatternWriter::survey, and ways around closed zones; returns
-/// them as they are flown. They end half of the spacing, in which the aircraft turns, before a closed zone. Throws
-/// InputError as survey_cells, and where there is no way to a cell.
+/// them as they are flown. They end half of the spacing, in which the aircraft turns, before a closed zone. The way to the
+/// first line leads around them from `start`, straight where there is no such way; without a start the flight begins at
+/// that line. Throws InputError as survey_cells, and where there is no way to a cell.
 std::vector<SurveyLine> write_area_survey(const PatternWriter& writer, const SurveyedArea& area, double spacing_m,
-                                          double course_deg);
+                                          double course_deg, const std::optional<LocalPosition>& start);
 
 }  // namespace flightwatt::path

@@ -22,7 +22,7 @@ FlightPath flown(const SurveyedArea& area, double spacing_m, double course_deg) 
     PathEntry like;
     like.name = "the survey";
     std::vector<PathEntry> entries;
-    write_area_survey({like, entries}, area, spacing_m, course_deg);
+    write_area_survey({like, entries}, area, spacing_m, course_deg, area.areas.front().front());
     PathDefaults defaults;
     defaults.airspeed_m_per_s = 10.0;
     defaults.start = area.areas.front().front();
