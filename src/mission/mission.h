@@ -72,6 +72,7 @@ struct SurveyCoverage {
     /// Mean over the area of weight * shape(coverage): a utility a second as those of components, as long as the
     /// mission takes. Absent: none is stated.
     std::optional<double> utility = {};
+    bool has_zones = false;  ///< holes or zones that are not to be flown over
 };
 
 /// What the powers of a mission rest on, where a payload changes those of its model's flights.

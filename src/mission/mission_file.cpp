@@ -386,6 +386,10 @@ MissionSetup setup_from(const TomlTable& root, const std::filesystem::path& path
     if (!root.has("path")) apply_airspeed(root, mission);
     read_durations(root, mission);
     read_cruise_path(root, reading, mission);
+    if (mission.packs && mission.survey && mission.survey->has_zones)
+        mission.notes.emplace_back(
+            "packs: the ways home and back to the lines are straight, also over zones that are not to be flown over: check "
+            "them, also in the files of plan --packs");
     find_power_model(root, mission);
     read_mission_battery(root, mission);
     note_other_cells(mission);

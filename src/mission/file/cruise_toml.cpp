@@ -200,6 +200,7 @@ bool is_chosen(const TomlTable& path) {
 /// How the lines cover the area, without times.
 SurveyCoverage read_coverage(const TomlTable& path, const path::SurveyLayout& layout, const path::SurveyPlan& survey) {
     SurveyCoverage coverage{layout, is_chosen(path)};
+    coverage.has_zones = survey.has_zones;
     for (const double to : survey.line_to) coverage.lines.push_back({0.0, 0.0, to});
     if (path.has("swath_m") != path.has("utility"))
         throw InputError(path.where(), "swath_m and utility belong together", "add the other, or leave this out");

@@ -268,6 +268,22 @@ TEST(PathToml, FliesPlansFromTheirFirstPlaceAndAltitude) {
                 0.3 * once_s, 1e-6 * once_s);
 }
 
+/// Packs flew home over zones that the lines avoid, without a word.
+TEST(PathToml, WarnsOfTheWaysOfPacksOverZones) {
+    const auto folder = path_folder();
+    write_text(folder / "hole.geojson", R"({"type": "Polygon", "coordinates":
+        [[[8.0, 47.0], [8.00526, 47.0], [8.00526, 47.0036], [8.0, 47.0036], [8.0, 47.0]],
+         [[8.002, 47.001], [8.003, 47.001], [8.003, 47.002], [8.002, 47.002], [8.002, 47.001]]]})");
+    const std::string path =
+        "[path]\nairspeed_m_per_s = 13\narea = \"hole.geojson\"\nspacing_m = 50\nheading_deg = 0\n";
+    const auto warns = [](const MissionSetup& setup) {
+        return std::ranges::any_of(setup.notes,
+                                   [](const auto& note) { return note.starts_with("packs: the ways home"); });
+    };
+    EXPECT_FALSE(warns(read(folder, "wing.toml", path).setup));
+    EXPECT_TRUE(warns(read(folder, "wing.toml", path + "[packs]\ncount = 3\nchange_s = 60\n").setup));
+}
+
 TEST(PathToml, FliesTurnsWithinTheBankAndRadiusThatItStates) {
     const auto folder = path_folder();
     const std::string corner =
