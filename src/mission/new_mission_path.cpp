@@ -127,8 +127,8 @@ NewPath open_path_of_plan(const PlanToFly& plan, double airspeed_m_per_s, bool i
             fmt::format("{} is no area (GeoJSON, KML): its lines have no spacing and heading to state", file.string()));
     if (of_blocks && blocks.empty()) blocks = only_block(text, file.string(), airspeed_m_per_s);
     const auto read = [&](std::optional<double> radius_m) {
-        const path::AutopilotSettings settings{radius_m, airspeed_m_per_s, is_rotorcraft, false,
-                                               plan.terrain.value_or("")};
+        const path::AutopilotSettings settings{
+            radius_m, airspeed_m_per_s, is_rotorcraft, false, plan.terrain.value_or(""), {}, {}, plan.home};
         return of_blocks ? path::parse_plan_blocks(text, file.string(), blocks, settings)
                          : path::read_waypoints(file, settings);
     };

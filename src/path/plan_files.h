@@ -21,6 +21,8 @@ struct AutopilotSettings {
     std::filesystem::path terrain = {};  ///< folder of tiles, for altitudes above the terrain; empty: none
     Wind wind = {};                      ///< in which circles that end after a time are flown
     TurnLimits turns = {};               ///< how narrow such circles are
+    std::optional<GeodeticPosition> home = std::nullopt;  ///< where it takes off, instead of the plan's home
+    bool returns_to_start = false;                        ///< its end is followed by a straight way there
 };
 
 /// The airspeed that a plan states for all legs without one of their own.

@@ -179,15 +179,15 @@ class GeoJsonReader {
     bool is_closed_ = false;  ///< the feature is not flown over
 };
 
-/// Makes altitudes above the ground those above the first place, by the heights of the terrain.
-void follow_terrain(const std::filesystem::path& folder, PlanEntries& plan) {
-    Terrain terrain(folder);
-    const auto home = *plan.entries.front().geographic;
+/// Makes altitudes above the ground those above home, by the heights of the terrain.
+void follow_terrain(const AutopilotSettings& settings, PlanEntries& plan) {
+    Terrain terrain(settings.terrain);
+    const auto home = settings.home.value_or(*plan.entries.front().geographic);
     for (auto& entry : plan.entries) {
         entry.is_above_terrain = entry.altitude_m.has_value();
         if (entry.altitude_m) *entry.altitude_m += terrain.ground_m(*entry.geographic) - terrain.ground_m(home);
     }
-    auto path = along_terrain(plan.entries, terrain, home);
+    auto path = along_terrain(plan.entries, terrain, home, settings.returns_to_start);
     plan.entries = std::move(path.entries);
     for (const auto& text : path.below_ground) {
         plan.not_flown.push_back(text);
@@ -237,7 +237,7 @@ AreaOutlines geojson_area(std::string_view text, const std::string& file) {
     return std::move(reader.outlines);
 }
 
-PlanEntries parse_kml(std::string_view text, const std::string& file, const std::filesystem::path& terrain) {
+PlanEntries parse_kml(std::string_view text, const std::string& file, const AutopilotSettings& settings) {
     constexpr auto hint =
         "expected KML with a path (LineString) or places (Point); a flight plan of Paparazzi is the path's flight_plan "
         "with blocks, a polygon of KML its area";
@@ -276,11 +276,11 @@ PlanEntries parse_kml(std::string_view text, const std::string& file, const std:
     };
     plan.is_above_home = modes.contains("relativeToGround");
     plan.is_above_sea = modes.contains("absolute");
-    if (!terrain.empty() && !plan.is_above_home) throw InputError({file}, no_terrain, leave_terrain_out);
-    if (plan.is_above_home && terrain.empty())
+    if (!settings.terrain.empty() && !plan.is_above_home) throw InputError({file}, no_terrain, leave_terrain_out);
+    if (plan.is_above_home && settings.terrain.empty())
         report("altitudes above the ground are flown as above that of its start", true);
     else if (plan.is_above_home)
-        follow_terrain(terrain, plan);
+        follow_terrain(settings, plan);
     if (ignored_m.size() > 1 || ignored_m.count(0.0) != ignored_m.size())
         report("altitudes that its altitudeMode clamps to the ground are not flown", ignored_m.size() > 1);
     return plan;
@@ -303,7 +303,7 @@ PlanEntries read_any_waypoints(const std::filesystem::path& path, const Autopilo
         case PlanFormat::ardupilot:
             return parse_wpl(text, path.string(), settings);
         case PlanFormat::flight_plan:
-            return parse_kml(text, path.string(), settings.terrain);
+            return parse_kml(text, path.string(), settings);
         default:
             return {parse_waypoint_csv(text, path.string())};
     }

@@ -21,8 +21,8 @@ std::vector<PathEntry> parse_waypoint_csv(std::string_view text, const std::stri
 std::vector<PathEntry> parse_geojson(std::string_view text, const std::string& file);
 
 /// Reads waypoints from KML: its LineStrings, without them its Points. Altitudes above the ground follow the tiles in
-/// the folder `terrain`, if it names one. Throws InputError.
-PlanEntries parse_kml(std::string_view text, const std::string& file, const std::filesystem::path& terrain = {});
+/// the folder of the settings, if they name one. Throws InputError.
+PlanEntries parse_kml(std::string_view text, const std::string& file, const AutopilotSettings& settings = {});
 
 /// Corners of a polygon on the ellipsoid.
 using Outline = std::vector<GeodeticPosition>;

@@ -175,7 +175,7 @@ TEST(WaypointFiles, OfKmlFollowTheTerrain) {
         return parse_kml(fmt::format("<kml><LineString><altitudeMode>{}</altitudeMode><coordinates>8.25,47.5,50 "
                                      "8.5,47.5,60</coordinates></LineString></kml>",
                                      mode),
-                         "a.kml", folder);
+                         "a.kml", {.radius_m = {}, .terrain = folder});
     };
     const auto plan = kml("relativeToGround");
     EXPECT_EQ(plan.entries.front().altitude_m, std::optional(50.0));

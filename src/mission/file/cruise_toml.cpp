@@ -199,8 +199,7 @@ bool is_chosen(const TomlTable& path) {
 
 /// How the lines cover the area, without times.
 SurveyCoverage read_coverage(const TomlTable& path, const path::SurveyLayout& layout, const path::SurveyPlan& survey) {
-    SurveyCoverage coverage{layout, is_chosen(path)};
-    coverage.has_zones = survey.has_zones;
+    SurveyCoverage coverage{layout, is_chosen(path), {}, 0.0, {}, survey.has_zones};
     for (const double to : survey.line_to) coverage.lines.push_back({0.0, 0.0, to});
     if (path.has("swath_m") != path.has("utility"))
         throw InputError(path.where(), "swath_m and utility belong together", "add the other, or leave this out");
@@ -302,15 +301,17 @@ path::PlanEntries read_planned(const TomlTable& path, const path::Wind& wind, bo
         path.optional_boolean("one_airspeed").value_or(false),
         path.has("terrain") ? named_file(path, "terrain") : "",
         wind,
-        read_turn_limits(path, is_rotorcraft)};
+        read_turn_limits(path, is_rotorcraft),
+        defaults.geographic_start,
+        defaults.return_to_start};
     if (settings.one_airspeed && !path.has("airspeed_m_per_s"))
         throw InputError(path.where("one_airspeed"), "one_airspeed needs airspeed_m_per_s", "add it");
     if (path.has("waypoints")) return path::read_waypoints(named_file(path, "waypoints"), settings);
     if (path.has("area")) {
         const auto file = named_file(path, "area");
-        const auto layout = mission.survey->layout;
-        auto survey = path::parse_area(read_file(file), file.string(), layout, defaults.geographic_start);
-        mission.survey = read_coverage(path, layout, survey);
+        auto survey =
+            path::parse_area(read_file(file), file.string(), mission.survey->layout, defaults.geographic_start);
+        mission.survey = read_coverage(path, mission.survey->layout, survey);
         if (survey.is_divided && is_chosen(path))
             mission.notes.emplace_back(
                 "path: its lines are not chosen again in flight: notches, holes, zones or several "
@@ -365,8 +366,7 @@ path::PlanEntries read_entries(const TomlTable& path, const path::Wind& wind, pa
     if (plan.starts_at_home && (defaults.start || defaults.geographic_start)) entries.erase(entries.begin());
     const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
     if (!defaults.altitude_m && first != entries.end()) defaults.altitude_m = first->altitude_m;
-    std::size_t number = 0;
-    for (const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
+    for (std::size_t number = 0; const auto& leg : path.tables("leg")) entries.push_back(read_leg(leg, ++number));
     if (entries.empty())
         throw InputError(path.where(), "the path has no legs", "add [[path.leg]], waypoints, flight_plan or area");
     return plan;

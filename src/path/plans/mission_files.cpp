@@ -43,15 +43,6 @@ struct MissionItems {
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
 };
 
-/// Returns whether a command that is not known moves the aircraft: those for navigation, and few others.
-bool is_movement(int command) {
-    constexpr int last_for_navigation = 94;
-    constexpr int region_of_interest = 80;
-    constexpr std::array others{0, 113, 179, 192, 213, 252, 601, 42702, 42703};  // 0: an item without commands
-    return std::ranges::count(others, command) > 0 ||
-           (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
-}
-
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
                                          const Location& where) {
@@ -72,7 +63,10 @@ class ItemReader {
           home_(place_at(mission.home[0], mission.home[1], "home", mission.where)),
           speed_(mission.speed) {
         if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
+        const auto planned = std::exchange(home_, settings.home ? settings.home : home_);
         if (home_ && !settings.terrain.empty()) terrain_.emplace(settings.terrain);
+        if (terrain_ && planned && home_altitude_m_)
+            *home_altitude_m_ += terrain_->ground_m(*home_) - terrain_->ground_m(*planned);
     }
 
     /// Reads an item, flown for the `round`th time.
@@ -139,7 +133,9 @@ class ItemReader {
             entries_.front().where = where;
             entries_.front().geographic = home_;
         }
-        auto path = terrain_ ? along_terrain(entries_, *terrain_, *home_) : TerrainPath{std::move(entries_), {}};
+        const bool returns = settings_.returns_to_start;
+        auto path =
+            terrain_ ? along_terrain(entries_, *terrain_, *home_, returns) : TerrainPath{std::move(entries_), {}};
         PlanEntries plan{
             std::move(path.entries),  path.below_ground, path.below_ground, true, starts_at_home, true, lands, speed_,
             mission_.is_of_multirotor};
@@ -204,9 +200,11 @@ class ItemReader {
         }
         if (is_above_terrain(item)) {
             if (!terrain_)
-                report_missing(item,
-                               "the altitude above the terrain is flown as one above home: terrain (--terrain) names "
-                               "a folder of its heights");
+                report_missing(item, settings_.terrain.empty()
+                                         ? "the altitude above the terrain is flown as one above home: terrain "
+                                           "(--terrain) names a folder of its heights"
+                                         : "the altitude above the terrain is flown as one above home, which the plan "
+                                           "does not state: start (--home) does");
         } else if (item.frame != 3 && item.frame != 6) {
             throw InputError(item.where, fmt::format("{} has its altitude in frame {}", item.name, item.frame),
                              "expected 0 (above the sea), 3 (above home) or 10 (above the terrain)");

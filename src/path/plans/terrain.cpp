@@ -23,6 +23,13 @@ std::string tile_name(int latitude_deg, int longitude_deg) {
                        longitude_deg < 0 ? 'W' : 'E', std::abs(longitude_deg));
 }
 
+/// From -180 on to less than 180 degrees, as tiles are named.
+double east_of_date_line(double longitude_deg, double rounding_deg) {
+    constexpr double circle_deg = 360.0;
+    if (longitude_deg + rounding_deg >= 180.0) return longitude_deg - circle_deg;
+    return longitude_deg + rounding_deg < -180.0 ? longitude_deg + circle_deg : longitude_deg;
+}
+
 /// A straight way between two entries, in places `step_m` apart.
 struct Way {
     std::vector<GeodeticPosition> places;
@@ -115,7 +122,8 @@ const Terrain::Tile& Terrain::tile_at(int latitude_deg, int longitude_deg) {
 double Terrain::ground_m(const GeodeticPosition& place) {
     constexpr double rounding_deg = 1e-9;
     const double south_deg = std::floor(place.latitude_deg + rounding_deg);
-    const double west_deg = std::floor(place.longitude_deg + rounding_deg);
+    const double longitude_deg = east_of_date_line(place.longitude_deg, rounding_deg);
+    const double west_deg = std::floor(longitude_deg + rounding_deg);
     const auto& tile = tile_at(static_cast<int>(south_deg), static_cast<int>(west_deg));
     const auto height_m = [&](std::size_t row, std::size_t column) {
         constexpr std::int16_t none = INT16_MIN;
@@ -131,7 +139,7 @@ double Terrain::ground_m(const GeodeticPosition& place) {
     };
     const auto last = static_cast<double>(tile.rows - 1);
     const double row = std::max(0.0, south_deg + 1.0 - place.latitude_deg) * last;
-    const double column = std::max(0.0, place.longitude_deg - west_deg) * last;
+    const double column = std::max(0.0, longitude_deg - west_deg) * last;
     const auto north = static_cast<std::size_t>(std::min(std::floor(row), last - 1.0));
     const auto west = static_cast<std::size_t>(std::min(std::floor(column), last - 1.0));
     const double to_south = row - static_cast<double>(north);
@@ -140,7 +148,8 @@ double Terrain::ground_m(const GeodeticPosition& place) {
                      std::lerp(height_m(north + 1, west), height_m(north + 1, west + 1), to_east), to_south);
 }
 
-TerrainPath along_terrain(const std::vector<PathEntry>& entries, Terrain& terrain, const GeodeticPosition& home) {
+TerrainPath along_terrain(const std::vector<PathEntry>& entries, Terrain& terrain, const GeodeticPosition& home,
+                          bool returns_home) {
     const double home_ground_m = terrain.ground_m(home);
     TerrainPath path;
     const PathEntry* from = nullptr;
@@ -160,6 +169,13 @@ TerrainPath along_terrain(const std::vector<PathEntry>& entries, Terrain& terrai
         from_m = to_m;
         if (entry.geographic) from = &entry;
     }
+    if (!returns_home || from == nullptr || !from_m) return path;
+    PathEntry back;
+    back.name = "return to start";
+    auto way = sampled_way(*from->geographic, home, terrain, home_ground_m);
+    const auto first = std::ranges::find_if(entries, [](const auto& entry) { return !!entry.altitude_m; });
+    set_altitudes(way, *from_m, *first->altitude_m, false);
+    if (auto text = below_ground(back, way)) path.below_ground.push_back(std::move(*text));
     return path;
 }
 

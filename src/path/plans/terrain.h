@@ -42,7 +42,9 @@ struct TerrainPath {
 
 /// Returns the entries, whose altitudes are above home, with further ones on each way that keeps its height above the
 /// terrain: where the ground differs by more than 10 m from a straight line, which is the error of SRTM over such
-/// distances. Throws as Terrain::ground_m().
-TerrainPath along_terrain(const std::vector<PathEntry>& entries, Terrain& terrain, const GeodeticPosition& home);
+/// distances. With `returns_home` a straight way home to the first altitude, which is no entry, follows the last one.
+/// Throws as Terrain::ground_m().
+TerrainPath along_terrain(const std::vector<PathEntry>& entries, Terrain& terrain, const GeodeticPosition& home,
+                          bool returns_home);
 
 }  // namespace flightwatt::path

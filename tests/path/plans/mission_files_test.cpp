@@ -477,6 +477,10 @@ TEST(MissionFiles, FlyAltitudesAboveTheTerrainByItsHeights) {
     const auto plan = parse_qgc_plan(text, "q.plan", {.radius_m = {}, .terrain = folder});
     EXPECT_NEAR(plan.entries.back().altitude_m.value(), 60.0 + 200.0 * 0.3, 1e-6) << "home is at 47 degrees, 100 m";
     EXPECT_TRUE(plan.missing.empty());
+    // Heights were counted from the plan's home, wherever it takes off.
+    const auto from_ridge =
+        parse_qgc_plan(text, "q.plan", {.radius_m = {}, .terrain = folder, .home = GeodeticPosition{47.5, 8.1}});
+    EXPECT_NEAR(from_ridge.entries.back().altitude_m.value(), 60.0 - 200.0 * 0.2, 1e-6) << "home is at 200 m";
     const auto flat = parse_qgc_plan(text, "q.plan", {});
     EXPECT_EQ(flat.entries.back().altitude_m, 60.0);
     EXPECT_EQ(flat.missing,

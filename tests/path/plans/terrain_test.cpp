@@ -85,7 +85,8 @@ double hill_m(double north_deg, double) { return 200.0 * std::max(0.0, 1.0 - std
 
 TEST(Terrain, IsFollowedBetweenPlacesAboveIt) {
     Terrain terrain(folder_of("hill", hill_m));
-    const auto path = along_terrain({entry(47.4, 8.5, 60.0, true), entry(47.6, 8.5, 60.0, true)}, terrain, {47.4, 8.5});
+    const auto path =
+        along_terrain({entry(47.4, 8.5, 60.0, true), entry(47.6, 8.5, 60.0, true)}, terrain, {47.4, 8.5}, false);
     ASSERT_EQ(path.entries.size(), 5U);  // the foot, the top, the foot
     const double foot_m = path.entries[1].altitude_m.value();
     EXPECT_NEAR(foot_m, 60.0, 10.0);
@@ -98,10 +99,27 @@ TEST(Terrain, IsFollowedBetweenPlacesAboveIt) {
 TEST(Terrain, IsNamedWhereThePlanLeadsBelowIt) {
     Terrain terrain(folder_of("hill", hill_m));
     const auto path =
-        along_terrain({entry(47.4, 8.5, 60.0, false), entry(47.6, 8.5, 60.0, false)}, terrain, {47.4, 8.5});
+        along_terrain({entry(47.4, 8.5, 60.0, false), entry(47.6, 8.5, 60.0, false)}, terrain, {47.4, 8.5}, false);
     ASSERT_EQ(path.entries.size(), 2U);
     ASSERT_EQ(path.below_ground.size(), 1U);
     EXPECT_EQ(path.below_ground.front(), "item 47.6: the way there leads 140 m below the ground");
+}
+
+/// The way back that is added to a plan led through a hill without a word.
+TEST(Terrain, IsNamedWhereTheReturnLeadsBelowIt) {
+    Terrain terrain(folder_of("hill", hill_m));
+    const std::vector<PathEntry> over{entry(47.4, 8.5, 60.0, true), entry(47.6, 8.5, 60.0, true)};
+    EXPECT_EQ(along_terrain(over, terrain, {47.4, 8.5}, true).below_ground,
+              std::vector<std::string>{"return to start: the way there leads 140 m below the ground"});
+    EXPECT_TRUE(along_terrain(over, terrain, {47.7, 8.5}, true).below_ground.empty());
+}
+
+/// Tiles were asked for that are named E180.
+TEST(Terrain, GoesOnBeyondTheDateLine) {
+    Terrain terrain(folder_of("date_line", slope_m, "N10W180.hgt"));
+    EXPECT_NEAR(terrain.ground_m({10.5, 180.0}), slope_m(0.5, 0.0), 1e-9);
+    EXPECT_NEAR(terrain.ground_m({10.5, 180.25}), slope_m(0.5, 0.25), 1e-9);
+    EXPECT_NEAR(terrain.ground_m({10.5, -180.0}), slope_m(0.5, 0.0), 1e-9);
 }
 
 }  // namespace
