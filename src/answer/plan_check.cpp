@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -227,12 +228,13 @@ class Remedies {
     void add_spacing(const Flown& flown) {
         const auto& survey = setup_of(flown.mission).survey;
         if (!survey) return;
-        constexpr double max_times = 16.0;
+        double max_times = 16.0;  // of those that fit into the area
         const double own_m = survey->layout.strips.front().spacing_m;
         const auto with = [&](double times) {
             return flight_.fly(Change{.spacing_m = std::ceil(own_m * times)}, Draws::if_kept);
         };
-        if (!flight_.suffices(with, max_times)) return;
+        while (max_times > 1.0 && !flight_.suffices(with, max_times)) max_times /= std::numbers::sqrt2;
+        if (max_times <= 1.0) return;
         const double times_less = greatest(1.0 / max_times, 1.0, [&](double less) { return with(1.0 / less); });
         const double spacing_m = std::ceil(own_m / times_less);
         add("spacing", spacing_m, fmt::format("lines {:g} m instead of {:g} m apart", spacing_m, own_m),

@@ -34,7 +34,7 @@ bool has_blocks(std::string_view text) {
 bool is_area_text(std::string_view text) {
     return path::plan_format(text) == path::PlanFormat::flight_plan
                ? !has_blocks(text) && has(text, "<outerBoundaryIs")
-               : has(text, "\"Polygon\"") && !has(text, "\"fileType\"");
+               : (has(text, "\"Polygon\"") || has(text, "\"MultiPolygon\"")) && !has(text, "\"fileType\"");
 }
 
 /// The course of the lines with the fewest turns, the first of equals.

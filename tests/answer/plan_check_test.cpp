@@ -267,6 +267,22 @@ TEST(PlanCheck, OfATimeThatTheSpeedDoesNotGiveIsUncertain) {
     EXPECT_THAT(fast.reason, HasSubstr("600 m in 20 s are 30 m/s over ground"));
 }
 
+/// 16 times the spacing does not fit into the area, and no wider lines were offered; a MultiPolygon was no area.
+TEST(PlanCheck, HelpsWithFewerLinesOverANarrowArea) {
+    const auto file = test::scratch_dir() / "narrow.geojson";
+    test::write_text(file, R"({"type": "MultiPolygon", "coordinates": [[[[1.27, 43.40], [1.2733, 43.40],
+        [1.2733, 43.51], [1.27, 43.51], [1.27, 43.40]]]]})");
+    auto question = question_of(file);
+    question.plan.spacing_m = 40.0;
+    const auto check = check_plan(question);
+    ASSERT_EQ(check.fit, PlanFit::no);
+    const auto wider = std::ranges::find(check.remedies, "spacing", &PlanRemedy::kind);
+    ASSERT_NE(wider, check.remedies.end());
+    EXPECT_TRUE(wider->suffices);
+    question.plan.spacing_m = wider->value;
+    EXPECT_EQ(check_plan(question).fit, PlanFit::yes);
+}
+
 /// Tiles of the terrain were ignored with an area, even where there is no such folder.
 TEST(PlanCheck, RefusesTheTerrainOfAnArea) {
     auto question = question_of(test::source_dir() / "missions" / "synthetic" / "field.geojson");

@@ -24,6 +24,8 @@ function ofGeoJson(value: unknown, shape: PlanShape) {
     longitude ?? NaN,
   ]);
   if (object.type === "Polygon") shape.areas.push(places((object.coordinates as unknown[])[0]));
+  if (object.type === "MultiPolygon")
+    for (const polygon of object.coordinates as unknown[][]) shape.areas.push(places(polygon[0]));
   if (object.type === "LineString") shape.lines.push(places(object.coordinates));
 }
 
