@@ -19,11 +19,20 @@ namespace {
 constexpr std::size_t max_closed_corners = 300;
 constexpr const char* expected = "expected polygons, in GeoJSON or KML";
 
-/// Polygons of a placemark with "no-fly" in its name are not flown over.
+bool is_named_no_fly(const pugi::xml_node& polygon, const char* name) {
+    static const std::regex no_fly(R"(\bno[ _-]?fly)", std::regex::icase);
+    return std::regex_search(polygon.select_node(name).node().text().get(), no_fly);
+}
+
+/// Polygons of a placemark with "no-fly" in its name are not flown over, nor those of such a folder, unless all are in it.
 AreaOutlines kml_area(std::string_view text, const std::string& file) {
+    constexpr auto folder = "ancestor::Folder[1]/name";
     const auto document = load_kml(text, file, expected);
+    const auto polygons = document.select_nodes("//Polygon");
+    const bool by_folder =
+        std::ranges::any_of(polygons, [](const auto& polygon) { return !is_named_no_fly(polygon.node(), folder); });
     AreaOutlines found;
-    for (const auto& polygon : document.select_nodes("//Polygon")) {
+    for (const auto& polygon : polygons) {
         const auto ring = [&](const char* boundary, std::vector<Outline>& outlines) {
             const auto path = fmt::format("{}/LinearRing", boundary);
             for (const auto& node : polygon.node().select_nodes(path.c_str())) {
@@ -32,9 +41,8 @@ AreaOutlines kml_area(std::string_view text, const std::string& file) {
                     outline.push_back(corner.place);
             }
         };
-        static const std::regex no_fly("no[ _-]?fly", std::regex::icase);
-        const auto placemark = polygon.node().select_node("ancestor::Placemark[1]/name");
-        if (std::regex_search(placemark.node().text().get(), no_fly)) {
+        if (is_named_no_fly(polygon.node(), "ancestor::Placemark[1]/name") ||
+            (by_folder && is_named_no_fly(polygon.node(), folder))) {
             ring("outerBoundaryIs", found.closed);
             continue;
         }
@@ -63,6 +71,26 @@ SurveyedArea local_area(const AreaOutlines& outlines, const std::string& file) {
         return found;
     };
     return {local(outlines.areas), local(outlines.closed)};
+}
+
+bool is_middle_within(const Polygon& inner, const Polygon& outer) {
+    LocalPosition middle;
+    for (const auto& corner : inner) middle = middle + corner;
+    const auto count = static_cast<double>(inner.size());
+    return std::ranges::any_of(parts_within(outer, 0.0, middle.east_m / count), [&](const LinePart& part) {
+        return part.from_m < middle.north_m / count && middle.north_m / count < part.to_m;
+    });
+}
+
+/// Notes polygons that lie over each other, as both are flown: one may be meant as a zone.
+void note_overlaps(const std::vector<Polygon>& areas, SurveyPlan& survey) {
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        for (std::size_t j = i + 1; j < areas.size(); ++j)
+            if (is_middle_within(areas[i], areas[j]) || is_middle_within(areas[j], areas[i]))
+                survey.not_flown.push_back(fmt::format(
+                    "polygons {} and {} lie over each other and both are flown: one that is not to be flown "
+                    "over needs \"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)",
+                    i + 1, j + 1));
 }
 
 /// The layout's strips from left to right, with the lines of each.
@@ -191,6 +219,7 @@ SurveyPlan parse_area(std::string_view text, const std::string& file, const Surv
     const auto finest = std::ranges::min(layout.strips, {}, &SurveyStrip::spacing_m);
     survey.is_divided = is_divided(area, finest.spacing_m, layout.heading_deg, like.where);
     survey.has_zones = !area.closed.empty();
+    note_overlaps(area.areas, survey);
     const auto from =
         start ? std::optional(to_local(*start, outlines.areas.front().front())) : std::optional<LocalPosition>();
     if (survey.is_divided)

@@ -3,6 +3,7 @@
 #include "helpers/rejected.h"
 #include "path/plan_files.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -83,6 +84,31 @@ TEST(Areas, HaveHolesAndZonesThatAreNotFlownOver) {
 }
 
 /// Strips are of the width in the order of flight; a strip cut at the end of a line has the same lines.
+/// Zones in a folder of that name were covered by lines, a second time, without a word.
+TEST(Areas, OfFoldersNamedNoFlyAreZones) {
+    const auto polygon = [](const char* name, const char* places) {
+        return fmt::format(
+            "<Placemark><name>{}</name><Polygon><outerBoundaryIs><LinearRing><coordinates>{}</coordinates>"
+            "</LinearRing></outerBoundaryIs></Polygon></Placemark>",
+            name, places);
+    };
+    const auto field = polygon("Volcano flyover", "8.0,47.0 8.00526,47.0 8.00526,47.0036 8.0,47.0036 8.0,47.0");
+    const auto house = polygon("School", "8.0015,47.001 8.0035,47.001 8.0035,47.0025 8.0015,47.0025 8.0015,47.001");
+    const auto read = [](const std::string& inner) {
+        return parse_area("<kml>" + inner + "</kml>", "a", {0.0, {{20.0}}});
+    };
+    const auto zone = read(field + "<Folder><name>No-fly zones</name>" + house + "</Folder>");
+    EXPECT_TRUE(zone.has_zones);
+    EXPECT_TRUE(std::ranges::none_of(zone.not_flown, [](const auto& text) { return text.starts_with("polygons"); }));
+    EXPECT_FALSE(read("<Folder><name>With no-fly zones</name>" + field + "</Folder>").has_zones);
+    const auto both = read(field + house);
+    EXPECT_FALSE(both.has_zones);
+    EXPECT_EQ(both.not_flown,
+              std::vector<std::string>{
+                  "polygons 1 and 2 lie over each other and both are flown: one that is not to be flown over needs "
+                  "\"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)"});
+}
+
 /// Only the way back to the first corner was looked at, wherever the flight starts.
 TEST(Areas, AreReachedAroundZonesFromWhereTheFlightStarts) {
     constexpr auto wall = "[[7.996,46.999],[7.998,46.999],[7.998,47.005],[7.996,47.005],[7.996,46.999]]";

@@ -54,6 +54,8 @@ test("a table has comments, quotes and empty cells", () => {
 test("an area that is drawn is an area when it is read", () => {
   const corners = [[48, 11], [48.01, 11], [48.01, 11.02]];
   assert.deepEqual(shapes.shapeOf("a.geojson", shapes.areaFile(corners)).areas, [[...corners, corners[0]]]);
+  const several = { type: "MultiPolygon", coordinates: [[[[11, 48], [12, 48], [12, 49]]], [[[1, 8], [2, 8], [2, 9]]]] };
+  assert.equal(shapes.shapeOf("a.geojson", JSON.stringify(several)).areas.length, 2);
 });
 
 test("a file that is no plan has no places", () => {
