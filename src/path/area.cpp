@@ -24,7 +24,7 @@ bool is_named_no_fly(const pugi::xml_node& polygon, const char* name) {
     return std::regex_search(polygon.select_node(name).node().text().get(), no_fly);
 }
 
-/// Polygons of a placemark with "no-fly" in its name are not flown over, nor those of such a folder, unless all are in it.
+/// Polygons of placemarks named "no-fly" are not flown over, nor those of such a folder, unless all are in it.
 AreaOutlines kml_area(std::string_view text, const std::string& file) {
     constexpr auto folder = "ancestor::Folder[1]/name";
     const auto document = load_kml(text, file, expected);
