@@ -82,15 +82,15 @@ bool is_middle_within(const Polygon& inner, const Polygon& outer) {
     });
 }
 
-/// Notes polygons that lie over each other, as both are flown: one may be meant as a zone.
+/// Notes polygons that overlap, as both are flown: one may be meant as a zone.
 void note_overlaps(const std::vector<Polygon>& areas, SurveyPlan& survey) {
     for (std::size_t i = 0; i < areas.size(); ++i)
         for (std::size_t j = i + 1; j < areas.size(); ++j)
             if (is_middle_within(areas[i], areas[j]) || is_middle_within(areas[j], areas[i]))
-                survey.not_flown.push_back(fmt::format(
-                    "polygons {} and {} lie over each other and both are flown: one that is not to be flown "
-                    "over needs \"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)",
-                    i + 1, j + 1));
+                survey.not_flown.push_back(
+                    fmt::format("polygons {} and {} overlap and both are flown: one that is not to be flown "
+                                "over needs \"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)",
+                                i + 1, j + 1));
 }
 
 /// The layout's strips from left to right, with the lines of each.

@@ -103,13 +103,12 @@ TEST(Areas, OfFoldersNamedNoFlyAreZones) {
     EXPECT_FALSE(read("<Folder><name>With no-fly zones</name>" + field + "</Folder>").has_zones);
     const auto both = read(field + house);
     EXPECT_FALSE(both.has_zones);
-    EXPECT_EQ(both.not_flown,
-              std::vector<std::string>{
-                  "polygons 1 and 2 lie over each other and both are flown: one that is not to be flown over needs "
-                  "\"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)"});
+    EXPECT_EQ(both.not_flown, std::vector<std::string>{
+                                  "polygons 1 and 2 overlap and both are flown: one that is not to be flown over needs "
+                                  "\"no_fly\": true (GeoJSON) or \"no-fly\" in its name (KML)"});
 }
 
-/// Only the way back to the first corner was looked at, wherever the flight starts.
+/// Only the way back to the first corner was considered, wherever the flight starts.
 TEST(Areas, AreReachedAroundZonesFromWhereTheFlightStarts) {
     constexpr auto wall = "[[7.996,46.999],[7.998,46.999],[7.998,47.005],[7.996,47.005],[7.996,46.999]]";
     const auto with_zone = [](const char* zone) {

@@ -115,7 +115,7 @@ TEST(Terrain, IsNamedWhereTheReturnLeadsBelowIt) {
 }
 
 /// Tiles were asked for that are named E180.
-TEST(Terrain, GoesOnBeyondTheDateLine) {
+TEST(Terrain, ContinuesBeyondTheDateLine) {
     Terrain terrain(folder_of("date_line", slope_m, "N10W180.hgt"));
     EXPECT_NEAR(terrain.ground_m({10.5, 180.0}), slope_m(0.5, 0.0), 1e-9);
     EXPECT_NEAR(terrain.ground_m({10.5, 180.25}), slope_m(0.5, 0.25), 1e-9);
