@@ -22,27 +22,6 @@
 namespace flightwatt::path {
 namespace {
 
-/// A command of MAVLink (MAV_CMD) with its frame (MAV_FRAME) and parameters; NaN for those that are not given.
-struct MissionItem {
-    int command = 0;  ///< 0: without one
-    int frame = 0;
-    std::array<double, 7> parameters = {};
-    std::string name;
-    Location where;
-    double number = -1.0;  ///< by which jumps name it, 0 or more
-};
-
-struct MissionItems {
-    std::array<double, 3> home{std::nan(""), std::nan(""), std::nan("")};  ///< latitude, longitude, altitude above sea
-    std::vector<MissionItem> items;
-    Location where;
-    std::optional<PlannedSpeed> speed = {};
-    bool is_of_px4 = false;
-    bool is_of_ardupilot = false;
-    bool has_rally_points = false;
-    std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
-};
-
 /// None for latitude and longitude 0 or none: where the aircraft is.
 std::optional<GeodeticPosition> place_at(double latitude_deg, double longitude_deg, const std::string& name,
                                          const Location& where) {
@@ -72,47 +51,10 @@ class ItemReader {
     /// Reads an item, flown for the `round`th time.
     void read(const MissionItem& item, std::size_t round) {
         round_ = round;
-        const auto& parameters = item.parameters;
-        switch (item.command) {
-            case nav_spline:
-                report(item, "a spline is flown as a straight line");
-                [[fallthrough]];
-            case nav_waypoint:
-                return fly_to(item, waypoint_hold_s(item));
-            case nav_delay:
-                return hold(item, parameters[0]);
-            case nav_takeoff:
-            case nav_vtol_takeoff:
-                return take_off(item);
-            case nav_loiter_unlimited:
-                report_missing(item, "the circle has no end: it is flown once");
-                return circle(item, 1.0, false);
-            case nav_loiter_turns:
-                return circle(item, parameters[0], false);
-            case nav_loiter_time:
-                return circle(item, parameters[0], true);
-            case nav_loiter_to_altitude:
-                report(item, "the circles until an altitude is reached are not flown: the way there changes it");
-                return fly_to(item, 0.0);
-            case nav_return:
-                return go_home(item);
-            case nav_land:
-            case nav_vtol_land:
-                report(item, "the way to the landing is flown level; the descent is the mission's landing");
-                fly_level_to(item);
-                landed_after_ = entries_.size();
-                return;
-            case change_speed:
-                return set_speed(item);
-            case vtol_transition:
-                if (parameters[0] == 3.0) report(item, "what follows the transition to hover is flown as on the wing");
-                return;
-            default: {
-                const auto text =
-                    item.command == 0 ? std::string("not flown") : fmt::format("command {} is not flown", item.command);
-                is_movement(item.command) ? report_missing(item, text) : report(item, text);
-            }
-        }
+        const auto before = entries_.size();
+        fly(item);
+        if (hovers_ && entries_.size() > before && !lands_here())
+            report_missing(item, "it is flown in hover after a transition: its power is taken as that on the wing");
     }
 
     /// Adds a text to what is not flown; the same text of several items is added once, with their number.
@@ -152,12 +94,67 @@ class ItemReader {
     }
 
   private:
-    /// Whether it is a take-off at home, as far as a ground station places it.
+    void fly(const MissionItem& item) {
+        constexpr double to_hover = 3.0;  // MAV_VTOL_STATE
+        const auto& parameters = item.parameters;
+        switch (item.command) {
+            case nav_spline:
+                report(item, "a spline is flown as a straight line");
+                [[fallthrough]];
+            case nav_waypoint:
+                return fly_to(item, waypoint_hold_s(item));
+            case nav_delay:
+                return hold(item, parameters[0]);
+            case nav_takeoff:
+            case nav_vtol_takeoff:
+                return take_off(item);
+            case nav_loiter_unlimited:
+                report_missing(item, "the circle has no end: it is flown once");
+                return circle(item, 1.0, false);
+            case nav_loiter_turns:
+                return circle(item, parameters[0], false);
+            case nav_loiter_time:
+                return circle(item, parameters[0], true);
+            case nav_loiter_to_altitude:
+                report(item, "the circles until an altitude is reached are not flown: the way there changes it");
+                return fly_to(item, 0.0);
+            case nav_return:
+                return go_home(item);
+            case nav_land:
+            case nav_vtol_land:
+                report(item, "the way to the landing is flown level; the descent is the mission's landing");
+                fly_level_to(item);
+                landed_after_ = entries_.size();
+                return;
+            case change_speed:
+                return set_speed(item);
+            case vtol_transition:
+                hovers_ = parameters[0] == to_hover && !settings_.is_rotorcraft;
+                return;
+            default: {
+                const auto text =
+                    item.command == 0 ? std::string("not flown") : fmt::format("command {} is not flown", item.command);
+                is_movement(item.command) ? report_missing(item, text) : report(item, text);
+            }
+        }
+    }
+
+    /// Whether the last entry is a landing at the place before it, which is the model's.
+    bool lands_here() const {
+        if (landed_after_ != entries_.size() || entries_.size() < 2) return false;
+        const auto& from = entries_[entries_.size() - 2].geographic;
+        return from && is_near(*entries_.back().geographic, *from);
+    }
+
+    static bool is_near(const GeodeticPosition& place, const GeodeticPosition& other) {
+        constexpr double near_m = 10.0;  // as far as ground stations place it
+        const auto away = to_local(place, other);
+        return std::hypot(away.east_m, away.north_m) <= near_m;
+    }
+
+    /// Whether it is a take-off at home.
     bool is_at_home(const PathEntry& entry) const {
-        constexpr double near_m = 10.0;
-        if (!takes_off_ || !entry.geographic) return false;
-        const auto from_home = to_local(*entry.geographic, *home_);
-        return std::hypot(from_home.east_m, from_home.north_m) <= near_m;
+        return takes_off_ && entry.geographic && is_near(*entry.geographic, *home_);
     }
 
     PathEntry entry_of(const MissionItem& item) const {
@@ -222,7 +219,8 @@ class ItemReader {
     /// How long the aircraft waits at a waypoint: wings do not.
     double waypoint_hold_s(const MissionItem& item) {
         const double hold_s = item.parameters[0];
-        if (!(hold_s > 0.0) || settings_.is_rotorcraft || mission_.is_of_multirotor.value_or(false)) return hold_s;
+        if (!(hold_s > 0.0) || hovers_ || settings_.is_rotorcraft || mission_.is_of_multirotor.value_or(false))
+            return hold_s;
         report(item,
                "the hold is not flown, as wings do not wait at waypoints: circles for a time are NAV_LOITER_TIME");
         return 0.0;
@@ -314,6 +312,7 @@ class ItemReader {
     std::optional<double> home_altitude_m_;
     std::optional<Terrain> terrain_;           ///< where its heights and home are known
     bool takes_off_ = false;                   ///< an item states where
+    bool hovers_ = false;                      ///< a VTOL, after a transition to hover
     std::optional<std::size_t> landed_after_;  ///< so many entries
     std::size_t round_ = 1;                    ///< of the item
     std::optional<double> airspeed_m_per_s_;

@@ -60,13 +60,26 @@ TEST(MissionFiles, OfWingsDoNotWaitAtWaypoints) {
     EXPECT_EQ(parse_qgc_plan(text, "q.plan", {}).entries.back().hold_s, std::optional(600.0)) << "of a multirotor";
 }
 
-TEST(MissionFiles, OfAVtolStateThatHoverAfterATransitionIsNotFlown) {
-    const auto plan = parse_qgc_plan(
-        qgc(item(84, 3, "0, 0, 0, null, 47.0, 8.0, 30") + "," + item(3000, 2, "4, 0, 0, 0, 0, 0, 0") + "," +
-            item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60") + "," + item(3000, 2, "3, 0, 0, 0, 0, 0, 0")),
-        "q.plan", {});
-    EXPECT_EQ(plan.not_flown,
-              std::vector<std::string>{"item 4: what follows the transition to hover is flown as on the wing"});
+/// Ten minutes of hover were counted at the power of the cruise, and a check of the plan said yes.
+TEST(MissionFiles, OfAVtolAreNotFlownAsTheyAreWhereTheyHoverAfterATransition) {
+    const auto to_wing = item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60");
+    const auto missing = [&](const std::string& items, bool is_rotorcraft = false) {
+        return parse_qgc_plan(qgc(item(84, 3, "0, 0, 0, null, 47.0, 8.0, 30") + "," + to_wing + "," +
+                                  item(3000, 2, "3, 0, 0, 0, 0, 0, 0") + "," + items),
+                              "q.plan", {.radius_m = {}, .is_rotorcraft = is_rotorcraft})
+            .missing;
+    };
+    const std::vector<std::string> first{
+        "item 4: it is flown in hover after a transition: its power is taken as that on the wing"};
+    const auto wait = item(93, 2, "600, 0, 0, 0, 0, 0, 0");
+    const auto away = item(16, 3, "0, 0, 0, null, 47.02, 8.0, 60");
+    EXPECT_EQ(missing(wait), first);
+    EXPECT_EQ(missing(away), first);
+    EXPECT_EQ(missing(item(16, 3, "600, 0, 0, null, 47.01, 8.0, 60")), first) << "it waits at a waypoint";
+    EXPECT_EQ(missing(item(85, 3, "0, 0, 0, null, 47.02, 8.0, 0")), first) << "a landing elsewhere";
+    EXPECT_TRUE(missing(item(85, 3, "0, 0, 0, null, 47.01, 8.0, 0")).empty()) << "the model's landing hovers";
+    EXPECT_TRUE(missing(item(3000, 2, "4, 0, 0, 0, 0, 0, 0") + "," + away).empty()) << "on the wing again";
+    EXPECT_TRUE(missing(away, true).empty()) << "by the model of a rotorcraft";
 }
 
 TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {

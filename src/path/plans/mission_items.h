@@ -1,0 +1,52 @@
+#pragma once
+
+#include "base/error.h"
+#include "path/plan_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flightwatt::path {
+
+// MAV_CMD
+inline constexpr int nav_waypoint = 16, nav_loiter_unlimited = 17, nav_loiter_turns = 18, nav_loiter_time = 19,
+                     nav_return = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_altitude = 31, nav_spline = 82,
+                     nav_vtol_takeoff = 84, nav_vtol_land = 85, nav_delay = 93, jump = 177, change_speed = 178,
+                     vtol_transition = 3000;
+
+/// Returns whether a command that is not known moves the aircraft: those for navigation, and few others.
+inline bool is_movement(int command) {
+    constexpr int last_for_navigation = 94;
+    constexpr int region_of_interest = 80;
+    constexpr std::array others{0, 113, 179, 192, 213, 252, 601, 42702, 42703};  // 0: an item without commands
+    return std::ranges::count(others, command) > 0 ||
+           (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
+}
+
+/// A command of MAVLink (MAV_CMD) with its frame (MAV_FRAME) and parameters; NaN for those that are not given.
+struct MissionItem {
+    int command = 0;  ///< 0: without one
+    int frame = 0;
+    std::array<double, 7> parameters = {};
+    std::string name;
+    Location where;
+    double number = -1.0;  ///< by which jumps name it, 0 or more
+};
+
+/// The items of a plan, and what it states of its vehicle.
+struct MissionItems {
+    std::array<double, 3> home{std::nan(""), std::nan(""), std::nan("")};  ///< latitude, longitude, altitude above sea
+    std::vector<MissionItem> items;
+    Location where;
+    std::optional<PlannedSpeed> speed = {};
+    bool is_of_px4 = false;
+    bool is_of_ardupilot = false;
+    bool has_rally_points = false;
+    std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
+};
+
+}  // namespace flightwatt::path
