@@ -147,7 +147,7 @@ void write_packs(const cli::StageCall& call, const PlanArguments& arguments, con
         const auto name = fmt::format("pack-{}", flight.pack);
         const auto plan_name = name + path::plan_ending(format);
         auto written = write_plan({setup.name, drawn_path(plan), *plan.origin, setup.mechanical->is_rotorcraft,
-                                   plan.turns.value_or(path::TurnLimits{}), plan.wind, plan.rates},
+                                   plan.turns.value_or(path::TurnLimits{}), plan.wind, plan.rates, plan.is_of_vtol},
                                   format);
         notes.insert(written.notes.begin(), written.notes.end());
         files[folder / plan_name] = std::move(written.text);

@@ -30,7 +30,8 @@ struct PlannedPath {
     FlightPath drawn = {};                                      ///< the path without the turns, if there are limits
     std::optional<PathOrigin> origin = std::nullopt;            ///< absent: in metres from an unknown place
     std::optional<double> start_above_ground_m = std::nullopt;  ///< height of its start above home, if it is known
-    ClimbRates rates = {};  ///< of further ways: those of the path, else of the model's flights
+    ClimbRates rates = {};    ///< of further ways: those of the path, else of the model's flights
+    bool is_of_vtol = false;  ///< the plan that is flown takes off and lands as a VTOL
 };
 
 /// Returns the path without its turns.

@@ -43,6 +43,7 @@ struct PlanEntries {
     bool ends_with_landing = false;
     std::optional<PlannedSpeed> speed = {};
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names; else of a wing
+    bool is_of_vtol = false;                    ///< by that kind, or as it takes off or lands as a VTOL
     PlanFence fence = {};
     std::optional<double> home_altitude_m = {};  ///< of home above the sea, where altitudes are above home
     bool is_above_sea = false;                   ///< altitudes are above the sea, and the height of home is not stated

@@ -153,9 +153,9 @@ std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
                     {0.0, 0.0, 0.0, std::nullopt, place.latitude_deg, place.longitude_deg, altitude_m},
                     plan.origin.is_above_sea ? above_sea : above_home};
     };
-    std::vector<Item> items{item(nav_takeoff, {}, list.start_altitude_m())};
+    std::vector<Item> items{item(plan.is_of_vtol ? nav_vtol_takeoff : nav_takeoff, {}, list.start_altitude_m())};
     constexpr double pitch_deg = 15.0;
-    items.front().parameters[0] = plan.is_rotorcraft ? 0.0 : pitch_deg;
+    items.front().parameters[0] = plan.is_rotorcraft || plan.is_of_vtol ? 0.0 : pitch_deg;
     double airspeed = 0.0;
     for (const auto& stop : list.stops) {
         const double kind = plan.is_rotorcraft ? 1.0 : 0.0;  // multirotors have the ground speed alone
@@ -169,7 +169,7 @@ std::vector<Item> items_of(const PlanToWrite& plan, const StopList& list) {
         if (stop.circles) parameters[2] = signed_radius_m(*stop.circles);
         if (loiters) parameters[2] = plan.turns.radius_m.value_or(0.0);  // 0: the autopilot's
     }
-    items.push_back(item(nav_land, list.end(), 0.0));
+    items.push_back(item(plan.is_of_vtol ? nav_vtol_land : nav_land, list.end(), 0.0));
     items.back().frame = above_home;
     return items;
 }
@@ -196,14 +196,16 @@ std::string qgc_text(const PlanToWrite& plan, const StopList& list) {
     }
     const auto home = to_geodetic(plan.origin.start, plan.origin.place);
     const double airspeed = plan.path.elements.front().airspeed_m_per_s;
-    constexpr int fixed_wing = 1, quadrotor = 2;  // MAV_TYPE
+    constexpr int fixed_wing = 1, quadrotor = 2, vtol = 20;  // MAV_TYPE, as QGroundControl has them
     const Ordered mission{{"cruiseSpeed", plan.is_rotorcraft ? default_cruise_m_per_s : airspeed},
                           {"firmwareType", 0},  // any
                           {"globalPlanAltitudeMode", plan.origin.is_above_sea ? mixed_mode : relative_mode},
                           {"hoverSpeed", plan.is_rotorcraft ? airspeed : default_hover_m_per_s},
                           {"items", items},
                           {"plannedHomePosition", {home.latitude_deg, home.longitude_deg, plan.origin.ground_m}},
-                          {"vehicleType", plan.is_rotorcraft ? quadrotor : fixed_wing},
+                          {"vehicleType", plan.is_of_vtol      ? vtol
+                                          : plan.is_rotorcraft ? quadrotor
+                                                               : fixed_wing},
                           {"version", 2}};
     const auto none = Ordered::array();
     const Ordered file{{"fileType", "Plan"},

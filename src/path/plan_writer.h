@@ -17,7 +17,8 @@ struct PlanToWrite {
     bool is_rotorcraft = false;
     TurnLimits turns = {};  ///< turns between lines that are narrower, in the wind, are left to the autopilot
     Wind wind = {};
-    ClimbRates rates = {};  ///< with which heights above one place change: that takes no hold
+    ClimbRates rates = {};    ///< with which heights above one place change: that takes no hold
+    bool is_of_vtol = false;  ///< take-off and landing are those of VTOLs
 };
 
 /// A plan in the format of a ground station.

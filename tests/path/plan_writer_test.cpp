@@ -144,6 +144,19 @@ TEST(PlanWriter, WritesWhatIsReadAgain) {
         }
 }
 
+/// They were those of wings, which need a runway.
+TEST(PlanWriter, WritesTakeOffAndLandingOfVtols) {
+    auto plan = flight(false);
+    plan.is_of_vtol = true;
+    const auto wpl = write_plan(plan, PlanFormat::ardupilot).text;
+    EXPECT_NE(wpl.find("\n1\t0\t3\t84\t0.000000000000\t"), std::string::npos) << wpl;
+    EXPECT_NE(wpl.find("\t3\t85\t"), std::string::npos);
+    EXPECT_EQ(wpl.find("\t3\t21\t"), std::string::npos);
+    const auto qgc = write_plan(plan, PlanFormat::qgroundcontrol).text;
+    for (const auto* text : {"\"vehicleType\": 20", "\"command\": 84", "\"command\": 85"})
+        EXPECT_NE(qgc.find(text), std::string::npos) << text;
+}
+
 TEST(PlanWriter, StatesDefaultsOfTheFormat) {
     auto plan = flight();
     plan.origin.altitude_m.reset();

@@ -452,6 +452,7 @@ path::PlannedPath read_path(const TomlTable& table, const path::Wind& wind, cons
     const auto& [climb, descent] = defaults.rates;
     plan.rates = {climb ? climb : defaults.rates_on_spot.climb_m_per_s,
                   descent ? descent : defaults.rates_on_spot.descent_m_per_s};
+    plan.is_of_vtol = planned.is_of_vtol;
     plan.origin = path_origin(entries, defaults);
     plan.start_above_ground_m = start_above_ground_m(entries, defaults);
     if (plan.origin && planned.home_altitude_m) plan.origin->ground_m = *planned.home_altitude_m;

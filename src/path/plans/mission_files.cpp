@@ -82,6 +82,7 @@ class ItemReader {
             std::move(path.entries),  path.below_ground, path.below_ground, true, starts_at_home, true, lands, speed_,
             mission_.is_of_multirotor};
         plan.home_altitude_m = home_altitude_m_;
+        plan.is_of_vtol = mission_.is_of_vtol || std::ranges::any_of(mission_.items, is_of_vtol, &MissionItem::command);
         for (const auto& [text, items] : reports_) {
             const auto more = items.names.size() - 1;
             plan.not_flown.push_back(
@@ -441,7 +442,8 @@ class QgcReader {
         const auto type = mission.value("vehicleType", Json());
         const bool is_known = type.is_number_integer() && type != 0;
         const bool hovers = is_known ? std::ranges::count(multirotors, type.get<int>()) > 0 : is_rotorcraft_;
-        constexpr int fixed_wing = 1;  // MAV_TYPE
+        constexpr int fixed_wing = 1, first_vtol = 19, last_vtol = 25;  // MAV_TYPE
+        mission_.is_of_vtol = is_known && type >= first_vtol && type <= last_vtol;
         if (is_known && (hovers || type == fixed_wing)) mission_.is_of_multirotor = hovers;
         const auto* key = hovers ? "hoverSpeed" : "cruiseSpeed";
         const auto speed = mission.value(key, Json());

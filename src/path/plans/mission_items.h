@@ -27,6 +27,9 @@ inline bool is_movement(int command) {
            (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
 }
 
+/// Returns whether a command is a take-off or a landing of VTOLs.
+inline bool is_of_vtol(int command) { return command == nav_vtol_takeoff || command == nav_vtol_land; }
+
 /// A command of MAVLink (MAV_CMD) with its frame (MAV_FRAME) and parameters; NaN for those that are not given.
 struct MissionItem {
     int command = 0;  ///< 0: without one
@@ -47,6 +50,7 @@ struct MissionItems {
     bool is_of_ardupilot = false;
     bool has_rally_points = false;
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
+    bool is_of_vtol = false;                    ///< likewise, or by its commands
 };
 
 }  // namespace flightwatt::path

@@ -82,6 +82,19 @@ TEST(MissionFiles, OfAVtolAreNotFlownAsTheyAreWhereTheyHoverAfterATransition) {
     EXPECT_TRUE(missing(away, true).empty()) << "by the model of a rotorcraft";
 }
 
+TEST(MissionFiles, AreOfAVtolByTheirVehicleOrItsCommands) {
+    const auto to_wing = item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60");
+    const auto is_of_vtol = [](const std::string& text) { return parse_qgc_plan(text, "q.plan", {}).is_of_vtol; };
+    EXPECT_FALSE(is_of_vtol(qgc(to_wing)));
+    EXPECT_TRUE(is_of_vtol(qgc(item(84, 3, "0, 0, 0, null, 47.0, 8.0, 30") + "," + to_wing)));
+    EXPECT_TRUE(is_of_vtol(qgc(to_wing + "," + item(85, 3, "0, 0, 0, null, 47.0, 8.0, 0"))));
+    for (const int type : {1, 2, 20, 22}) {
+        auto text = qgc(to_wing);
+        text.insert(text.find("\"plannedHome"), fmt::format("\"vehicleType\": {}, ", type));
+        EXPECT_EQ(is_of_vtol(text), type >= 20) << type;
+    }
+}
+
 TEST(MissionFiles, FlyCirclesAndChangeTheAirspeed) {
     const auto plan = parse_qgc_plan(
         qgc(item(178, 2, "0, 14, -1, 0, 0, 0, 0") + "," + item(18, 3, "3, 0, -70, 1, 47.001, 8.0, 60") + "," +
