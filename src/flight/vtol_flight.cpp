@@ -60,7 +60,12 @@ std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {
         for (const auto& span : vtol_spans(data, phase.start.time_s, phase.end.time_s))
             (is_wing(span) ? wing_s : lifted_s) += span.duration_s();
     }
-    if (lifted_s == 0.0 || wing_s == 0.0) return "";
+    if (data.vtol_state.empty() || lifted_s == 0.0) return "";
+    if (wing_s == 0.0)
+        return fmt::format(
+            "sortie {}: it never flies on its wing: its cruise is hover, and in a fit with flights on the wing the mean "
+            "is of both; --exclude {} leaves it out",
+            sortie.number, data.flight);
     return fmt::format(
         "sortie {}: {:.0f} of {:.0f} s of the cruise are hover or transitions: its mean power is that of both",
         sortie.number, lifted_s, lifted_s + wing_s);

@@ -31,7 +31,7 @@ bool is_on_wing(const FlightData& data, double start_s, double end_s);
 /// Returns the time from the first to the last wing flight of a VTOL between two times; std::nullopt without any.
 std::optional<TimeInterval> wing_flight(const FlightData& data, double start_s, double end_s);
 
-/// Returns a warning of hover or transitions within the cruise of a VTOL that flies on its wing there; empty without.
+/// Returns a warning of hover or transitions within the cruise of a VTOL, or instead of it; empty without.
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie);
 
 /// Returns the duration, energy and mean power of each kind of flight of a VTOL's sortie: "hover 35 s, 5.95 Wh, 612 W;
