@@ -67,6 +67,7 @@ struct KeptAnswer {
     std::size_t logs = 0;
     std::size_t used = 0;
     std::optional<double> ground_speed_m_per_s;  ///< mean of the cruises
+    double wing_share = 1.0;                     ///< see answer::wing_share()
     answer::Answered capacity_ah;
     answer::Answered resistance_ohm;
     answer::Answered resistance_at_ohm;  ///< at the temperature that was asked for
@@ -81,6 +82,7 @@ Fields<KeptAnswer> record_fields(const KeptAnswer*) {
             field("logs", &R::logs),
             field("used", &R::used),
             field("ground_speed_m_per_s", &R::ground_speed_m_per_s),
+            field("wing_share", &R::wing_share),
             field("capacity_ah", &R::capacity_ah),
             field("resistance_ohm", &R::resistance_ohm),
             field("resistance_at_ohm", &R::resistance_at_ohm),
@@ -263,6 +265,7 @@ void keep_answer(const cli::StageCall& call, const AnswerArguments& arguments, c
                           answer.logs,
                           answer.used,
                           mean_ground_speed_m_per_s(aircraft.flights),
+                          wing_share(aircraft.flights),
                           answer.pack.capacity_ah,
                           answer.pack.resistance_ohm,
                           answer.pack.resistance_at_ohm,
@@ -307,6 +310,7 @@ cli::AircraftAnswer answer_again(const cli::StageCall& call, const AnswerArgumen
     answer::FlightFacts flown;
     flown.cruise_s = 1.0;
     flown.ground_speed_m_per_s = kept.ground_speed_m_per_s;
+    flown.wing_s = kept.wing_share;
     aircraft.flights = {flown};
     answer.endurance = answer_endurance(aircraft, answer.question);
     answer.failsafe_missing = "--again leaves it out";

@@ -107,6 +107,17 @@ Answered return_airspeed(const KnownAircraft& aircraft, const Question& question
     return known(speed, std::move(basis));
 }
 
+/// That a VTOL's cruises are not on its wing alone; empty where they are.
+std::string hover_note(double wing_share) {
+    constexpr double nearly_all = 0.98;
+    if (wing_share >= nearly_all) return "";
+    if (wing_share == 0.0) return "the flights never are on the wing: power and time are those of hover";
+    return fmt::format(
+        "{:.0f} % of the cruise are hover and transitions, as in the flights: power, time and distance are with them; "
+        "--airspeed answers for flight on the wing",
+        units::percent_per_whole * (1.0 - wing_share));
+}
+
 /// The distance over ground of a cruise along the wind, out and back.
 Answered distance(const Answered& airspeed, double cruise_s, double wind_m_per_s) {
     if (!airspeed.value) return unknown(airspeed.unknown);
@@ -219,6 +230,11 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
             fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
                         *aircraft.pack.asked_temperature_c));
     if (auto note = other_packs_note(aircraft.flights); !note.empty()) endurance.notes.push_back(std::move(note));
+    const double on_wing = mission_airspeed_m_per_s(aircraft, question) ? 1.0 : wing_share(aircraft.flights);
+    if (auto note = hover_note(on_wing); !note.empty()) endurance.notes.push_back(std::move(note));
+    const auto& physical = aircraft.model.physical;
+    const bool is_mean_speed = !physical || !(physical->mean_airspeed_m_per_s > 0.0);  // with that of the hover
+    const double at_speed = is_mean_speed ? 1.0 : on_wing;
     const auto no_95 = no_variability(aircraft, question);
     endurance.time_s = missing.empty() ? longest(with_cruise_s, other_s, std::nullopt, time_basis) : unknown(missing);
     endurance.time_95_s = !endurance.time_s.value ? unknown(endurance.time_s.unknown)
@@ -235,10 +251,11 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
     else if (endurance.is_hover)
         endurance.distance_m = unknown("it hovered in all flights; a flight along a way, or --airspeed, answers it");
     else
-        endurance.distance_m = distance(endurance.airspeed_m_per_s, cruise_s, question.wind_m_per_s);
+        endurance.distance_m = distance(endurance.airspeed_m_per_s, at_speed * cruise_s, question.wind_m_per_s);
     if (endurance.distance_m.value && question.wind_m_per_s > 0.0)
         endurance.distance_across_m =
-            cruise_s * std::sqrt(std::pow(*endurance.airspeed_m_per_s.value, 2) - std::pow(question.wind_m_per_s, 2));
+            at_speed * cruise_s *
+            std::sqrt(std::pow(*endurance.airspeed_m_per_s.value, 2) - std::pow(question.wind_m_per_s, 2));
     constexpr std::size_t enough_flights = 3;  // that distinguish the terms of the power
     if (aircraft.model.physical && !aircraft.model.is_rotorcraft && aircraft.model.flights.size() >= enough_flights)
         if (auto speeds = speed_to_fly(*aircraft.model.physical, question.wind_m_per_s))

@@ -2,6 +2,7 @@
 
 #include "base/units.h"
 #include "flight/phase_statistics.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,14 @@ std::optional<double> farthest_m(const Places& places, double start_s, double en
     return first ? std::optional(farthest) : std::nullopt;
 }
 
+std::optional<double> wing_s(const flight::FlightData& data, double start_s, double end_s) {
+    if (data.vtol_state.empty()) return std::nullopt;
+    double sum_s = 0.0;
+    for (const auto& span : flight::vtol_spans(data, start_s, end_s))
+        if (span.flight == flight::VtolFlight::wing) sum_s += span.duration_s();
+    return sum_s;
+}
+
 }  // namespace
 
 std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
@@ -77,10 +86,20 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
             const double end_s = span.end.time_s;
             facts.push_back({data.flight, end_s - start_s, mean_between(data.ground_speed_m_per_s, start_s, end_s),
                              farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s),
-                             data.monitors, pack_percent});
+                             data.monitors, pack_percent, wing_s(data, start_s, end_s)});
         }
     }
     return facts;
+}
+
+double wing_share(const std::vector<FlightFacts>& facts) {
+    double on_wing_s = 0.0;
+    double duration_s = 0.0;
+    for (const auto& flight : facts) {
+        on_wing_s += flight.wing_s.value_or(flight.cruise_s);
+        duration_s += flight.cruise_s;
+    }
+    return duration_s > 0.0 ? on_wing_s / duration_s : 1.0;
 }
 
 std::optional<double> mean_ground_speed_m_per_s(const std::vector<FlightFacts>& facts) {

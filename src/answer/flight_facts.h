@@ -19,10 +19,14 @@ struct FlightFacts {
     std::optional<double> mean_voltage_v = {};        ///< of the cruise
     std::vector<flight::MonitorShare> monitors = {};  ///< see FlightData
     std::optional<double> pack_percent = {};          ///< of the energy, by the pack; absent with a single circuit
+    std::optional<double> wing_s = {};                ///< of the cruise, on the wing; absent for one that is no VTOL
 };
 
 /// Returns the facts of each cruise of a log.
 std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded);
+
+/// Returns which part of the time of all cruises VTOLs were on their wing; 1 for other aircraft.
+double wing_share(const std::vector<FlightFacts>& facts);
 
 /// Returns the mean ground speed of all cruises, each by its duration; std::nullopt where none was logged [m/s].
 std::optional<double> mean_ground_speed_m_per_s(const std::vector<FlightFacts>& facts);

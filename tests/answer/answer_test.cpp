@@ -127,6 +127,22 @@ TEST_F(AnswerTest, PowerOfOtherPacksIsNamed) {
                 testing::Contains(HasSubstr("of which packs of other circuits gave 25 % in the flights")));
 }
 
+/// A VTOL that hovers for a tenth of its cruises was answered with the distance of the whole at its airspeed.
+TEST_F(AnswerTest, AVtolMakesNoWayInTheHoverOfItsCruise) {
+    auto aircraft = aircraft_of(100.0, 5.0, 2);
+    aircraft.model.physical = mechanical::PhysicalModel{};
+    aircraft.model.physical->mean_airspeed_m_per_s = 18.0;
+    const auto distance_m = [&] { return answer_endurance(aircraft, {}).distance_m.value.value(); };
+    const double on_wing_m = distance_m();
+    aircraft.flights = {{.flight = "a", .cruise_s = 600.0, .wing_s = 500.0},
+                        {.flight = "b", .cruise_s = 400.0, .wing_s = 400.0}};
+    EXPECT_NEAR(distance_m(), 0.9 * on_wing_m, 1e-6 * on_wing_m);
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes,
+                testing::Contains(HasSubstr("10 % of the cruise are hover and transitions")));
+    aircraft.flights = {{.flight = "a", .cruise_s = 600.0, .wing_s = 0.0}};
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Contains(HasSubstr("never are on the wing")));
+}
+
 TEST_F(AnswerTest, NoDistanceOfAHover) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.model.is_rotorcraft = true;

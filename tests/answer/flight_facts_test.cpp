@@ -50,6 +50,17 @@ TEST(FlightFacts, CountTheDistanceFromWhereTheFlightBegan) {
     EXPECT_NEAR(flight_facts(flown_places()).front().farthest_m.value(), 500.0, 1.0);
 }
 
+TEST(FlightFacts, HaveTheTimeOfAVtolOnItsWing) {
+    auto loaded = flown_places();
+    EXPECT_FALSE(flight_facts(loaded).front().wing_s);
+    loaded.data.vtol_state.time_s = {0.0, 120.0};
+    loaded.data.vtol_state.value = {static_cast<double>(flight::VtolState::hover),
+                                    static_cast<double>(flight::VtolState::wing)};
+    EXPECT_EQ(flight_facts(loaded).front().wing_s, std::optional(80.0));
+    EXPECT_DOUBLE_EQ(wing_share(flight_facts(loaded)), 0.8);
+    EXPECT_EQ(wing_share({}), 1.0);
+}
+
 TEST(MeanGroundSpeed, WeighsCruisesByTheirDuration) {
     EXPECT_NEAR(mean_ground_speed_m_per_s({{"a", 100.0, 10.0}, {"b", 300.0, 14.0}, {"c", 900.0}}).value(), 13.0, 1e-12);
     EXPECT_FALSE(mean_ground_speed_m_per_s({{"a", 100.0}}));
