@@ -197,7 +197,7 @@ std::string qgc_text(const PlanToWrite& plan, const StopList& list) {
     const auto home = to_geodetic(plan.origin.start, plan.origin.place);
     const double airspeed = plan.path.elements.front().airspeed_m_per_s;
     constexpr int fixed_wing = 1, quadrotor = 2, vtol = 20;  // MAV_TYPE, as QGroundControl has them
-    const Ordered mission{{"cruiseSpeed", plan.is_rotorcraft ? default_cruise_m_per_s : airspeed},
+    const Ordered mission{{"cruiseSpeed", plan.is_rotorcraft && !plan.is_of_vtol ? default_cruise_m_per_s : airspeed},
                           {"firmwareType", 0},  // any
                           {"globalPlanAltitudeMode", plan.origin.is_above_sea ? mixed_mode : relative_mode},
                           {"hoverSpeed", plan.is_rotorcraft ? airspeed : default_hover_m_per_s},

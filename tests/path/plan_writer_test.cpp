@@ -155,6 +155,9 @@ TEST(PlanWriter, WritesTakeOffAndLandingOfVtols) {
     const auto qgc = write_plan(plan, PlanFormat::qgroundcontrol).text;
     for (const auto* text : {"\"vehicleType\": 20", "\"command\": 84", "\"command\": 85"})
         EXPECT_NE(qgc.find(text), std::string::npos) << text;
+    plan.is_rotorcraft = true;
+    EXPECT_NE(write_plan(plan, PlanFormat::qgroundcontrol).text.find("\"cruiseSpeed\": 14"), std::string::npos)
+        << "the speed that is read of a VTOL's plan";
 }
 
 TEST(PlanWriter, StatesDefaultsOfTheFormat) {
