@@ -141,7 +141,7 @@ void add_tracks(const FamilyTrack& of, const MessageTable& table, const Instance
         }
         const auto instance = instances.numbered ? fmt::format("{}", number) : "";
         auto track = make_candidate(of.track, source_name(of, instance), table, values, of.merge);
-        if (of.compute == if_stated_temperature || of.compute == if_vtol_state) {
+        if (of.compute == if_stated_temperature || of.compute == if_vtol_state || of.compute == if_vtol_status) {
             if (track.empty()) continue;
             track.since_s = track.time_s.front();
         }
@@ -211,6 +211,14 @@ double if_stated_temperature(const std::vector<double>& row) {
 }
 
 double if_vtol_state(const std::vector<double>& row) { return row[0] > 0.0 ? row[0] : no_value; }
+
+double if_vtol_status(const std::vector<double>& row) {
+    if (row[0] == 0.0) return no_value;
+    const auto state = row[2] != 0.0   ? row[3] != 0.0 ? VtolState::transition_to_wing : VtolState::transition_to_hover
+                       : row[1] == 1.0 ? VtolState::hover
+                                       : VtolState::wing;
+    return static_cast<double>(state);
+}
 
 double lift_motors_run(const std::vector<double>& /*row*/) { return static_cast<double>(VtolState::hover); }
 

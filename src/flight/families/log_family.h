@@ -66,6 +66,9 @@ double if_stated_temperature(const std::vector<double>& row);
 
 /// Returns a VTOL's state; NaN for 0, with which autopilots of other aircraft state that they have none.
 double if_vtol_state(const std::vector<double>& row);
+/// Returns the VtolState by whether it is a VTOL, flies as a rotorcraft (1), is in a transition, and in one to its wing;
+/// NaN for other aircraft.
+double if_vtol_status(const std::vector<double>& row);
 
 /// Returns that the lift motors of a VTOL run, as ArduPilot logs QTUN only then.
 double lift_motors_run(const std::vector<double>& row);

@@ -50,11 +50,7 @@ double is_armed(const std::vector<double>& state) {
 
 /// Until 1.12: whether it flies as a rotorcraft, is in a transition, and in one to its wing.
 double vtol_state_of(const std::vector<double>& flags) {
-    const auto state = flags[1] != 0.0
-                           ? flags[2] != 0.0 ? VtolState::transition_to_wing : VtolState::transition_to_hover
-                       : flags[0] != 0.0 ? VtolState::hover
-                                         : VtolState::wing;
-    return static_cast<double>(state);
+    return if_vtol_status({1.0, flags[0] != 0.0 ? 1.0 : 0.0, flags[1], flags[2]});
 }
 
 const std::vector<FamilyTrack>& px4_tracks() {
@@ -102,6 +98,16 @@ const std::vector<FamilyTrack>& px4_tracks() {
          {{"vtol_in_rw_mode"}, {"vtol_in_trans_mode"}, {"in_transition_to_fw"}},
          latest,
          vtol_state_of},
+        {"vtol_state",  // logs without vtol_vehicle_status
+         "vehicle_status",
+         {{"is_vtol"}, {"vehicle_type"}, {"in_transition_mode"}, {"in_transition_to_fw"}},
+         latest,
+         if_vtol_status},
+        {"vtol_state",  // until 1.10
+         "vehicle_status",
+         {{"is_vtol"}, {"is_rotary_wing"}, {"in_transition_mode"}, {"in_transition_to_fw"}},
+         latest,
+         if_vtol_status},
         {"ground_speed_m_per_s", "vehicle_local_position", velocity, mean, speed_of},
         {"course_deg", "vehicle_local_position", velocity, latest, course_of},
         {"heading_deg", "vehicle_attitude", quaternion, latest, heading_of},

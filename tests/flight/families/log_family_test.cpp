@@ -115,10 +115,10 @@ TEST(LogFamily, ReadsThatAQuadplaneIsOnItsWingWhileItLogsNoLiftMotors) {
     EXPECT_EQ(state.time_s.back(), 39.75) << "the log ends at 39.9 s without them";
 }
 
-std::string ulog_of_vtol(const std::string& fields, const std::vector<std::string>& states) {
+/// A log with messages of a topic a second, each after one of the battery.
+std::string ulog_of(const std::string& topic, const std::string& fields, const std::vector<std::string>& states) {
     auto log = test::ulog_header() + test::ulog_definitions() +
-               test::ulog_message('F', "vtol_vehicle_status:uint64_t timestamp;" + fields) +
-               test::ulog_subscription(0, 9, "vtol_vehicle_status");
+               test::ulog_message('F', topic + ":uint64_t timestamp;" + fields) + test::ulog_subscription(0, 9, topic);
     for (std::size_t i = 0; i < states.size(); ++i) {
         const double time_s = 10.0 + static_cast<double>(i);
         log += test::ulog_battery(7, time_s, 22.0F, 10.0F) +
@@ -126,6 +126,10 @@ std::string ulog_of_vtol(const std::string& fields, const std::vector<std::strin
                                            test::little_endian(static_cast<std::uint64_t>(time_s * 1e6)) + states[i]);
     }
     return log;
+}
+
+std::string ulog_of_vtol(const std::string& fields, const std::vector<std::string>& states) {
+    return ulog_of("vtol_vehicle_status", fields, states);
 }
 
 TEST(LogFamily, ReadsTheStateOfPx4VtolsOfAllVersions) {
@@ -136,6 +140,20 @@ TEST(LogFamily, ReadsTheStateOfPx4VtolsOfAllVersions) {
     EXPECT_EQ(select_track(series_of(flags, "x.ulg"), "vtol_state").value, (std::vector{3.0, 1.0, 4.0, 2.0}));
     const auto numbers = ulog_of_vtol("uint8_t vehicle_vtol_state;", {no, "\3", "\1", "\4"});
     EXPECT_EQ(select_track(series_of(numbers, "x.ulg"), "vtol_state").value, (std::vector{3.0, 1.0, 4.0}));
+}
+
+/// Logs without vtol_vehicle_status counted hover as flight on the wing.
+TEST(LogFamily, ReadsTheStateOfPx4VtolsOfTheirVehicleStatus) {
+    const std::string no(1, '\0');
+    const std::string yes(1, '\1');
+    const std::string wing(1, '\2');
+    const std::string fields = "uint8_t vehicle_type;bool is_vtol;bool in_transition_mode;bool in_transition_to_fw;";
+    const auto state_of = [&](const std::vector<std::string>& states) {
+        return select_track(series_of(ulog_of("vehicle_status", fields, states), "x.ulg"), "vtol_state");
+    };
+    EXPECT_EQ(state_of({yes + yes + no + no, yes + yes + yes + yes, wing + yes + no + no, yes + yes + yes + no}).value,
+              (std::vector{3.0, 1.0, 4.0, 2.0}));
+    EXPECT_TRUE(state_of({yes + no + no + no, yes + no + no + no}).empty()) << "a multirotor";
 }
 
 TEST(LogFamily, SeriesFileLosesNothing) {
