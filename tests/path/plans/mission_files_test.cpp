@@ -60,7 +60,7 @@ TEST(MissionFiles, OfWingsDoNotWaitAtWaypoints) {
     EXPECT_EQ(parse_qgc_plan(text, "q.plan", {}).entries.back().hold_s, std::optional(600.0)) << "of a multirotor";
 }
 
-/// Ten minutes of hover were counted at the power of the cruise, and a check of the plan said yes.
+/// Ten minutes of hover were counted at the power of the cruise, and the answer was yes.
 TEST(MissionFiles, OfAVtolAreNotFlownAsTheyAreWhereTheyHoverAfterATransition) {
     const auto to_wing = item(16, 3, "0, 0, 0, null, 47.01, 8.0, 60");
     const auto missing = [&](const std::string& items, bool is_rotorcraft = false) {
