@@ -28,6 +28,7 @@ namespace flightwatt::mission {
 namespace {
 
 constexpr double noted_part = 0.2;  // of the power
+constexpr double max_wind_m_per_s = 100.0;
 
 /// Throws InputError at `where` if the model has no physical part.
 const mechanical::PhysicalModel& physical_of(const mechanical::MechanicalModel& model, const Location& where) {
@@ -71,8 +72,6 @@ std::string near_flown_hint(const mechanical::PhysicalModel& physical) {
         "they flew {:.4g} to {:.4g} m/s; give an airspeed near these, or fit a model to flights that were flown so",
         physical.airspeed_m_per_s.low, physical.airspeed_m_per_s.high);
 }
-
-constexpr double max_wind_m_per_s = 100.0;
 
 path::Wind read_wind(const TomlTable& root) {
     path::Wind wind;
