@@ -140,6 +140,7 @@ export interface AircraftAnswer {
   best_speeds: BestSpeed[];
   capacity_ah: Answered;
   flights_capacity_ah_interval_95: Interval | null;
+  voltage_known_down_to_percent: number | null;
   resistance_ohm: Answered;
   resistance_ohm_interval_95: Interval | null;
   air_temperature_c_range: Interval | null;
