@@ -6,7 +6,7 @@ export const rest_ms = 200;
 
 /// Does the latest of what is asked whenever one of `inputs` changes; while it is under way, what is asked last alone is
 /// next. The work returns what it found, or why it found nothing; `refine`, if there is more to find once nothing else
-/// is asked, does so.
+/// is asked, does so. Both are those of the latest inputs, also where these change while the work is under way.
 export function useLatest<Asked, Found extends object>(
   asked: Asked | null | undefined,
   work: (asked: Asked) => Promise<Found | string>,
@@ -18,6 +18,8 @@ export function useLatest<Asked, Found extends object>(
   const [asking, setAsking] = useState(false);
   const wanted = useRef(asked);
   const busy = useRef(false);
+  const now = useRef({ work, refine });
+  now.current = { work, refine };
   useEffect(() => {
     wanted.current = asked;
     if (asked == null || busy.current) return;
@@ -27,12 +29,14 @@ export function useLatest<Asked, Found extends object>(
       while (wanted.current != null) {
         const latest = wanted.current;
         wanted.current = null;
-        const result = await work(latest).catch((error) => String(error));
+        const result = await now.current.work(latest).catch((error) => String(error));
         setFailed(typeof result === "string" ? result : "");
         if (typeof result === "string") continue;
         setFound(result);
         if (refine) await new Promise((rested) => setTimeout(rested, rest_ms));
-        const finer = wanted.current == null ? await refine?.(latest, result)?.catch((error) => String(error)) : null;
+        const finer = wanted.current == null
+          ? await now.current.refine?.(latest, result)?.catch((error) => String(error))
+          : null;
         if (finer == null || wanted.current != null) continue;
         if (typeof finer === "string") setFailed(finer);
         else setFound(finer);
