@@ -1,12 +1,11 @@
-// A recording of MAVLink (.tlog), as a log and as it grows, and its bytes as a link; as it is and with right checksums,
-// which random bytes would not have.
+// A recording of MAVLink (.tlog), as a log and as it grows, and its bytes as a link, up to the flight. mavlink_frames
+// has the frames alone.
 
 #include "flight/load_flight.h"
 #include "flight/telemetry_series.h"
 #include "fuzz/flight_sink.h"
 #include "fuzz/fuzz_target.h"
-#include "telemetry/mavlink/frames.h"
-#include "telemetry/mavlink/messages.h"
+#include "fuzz/mavlink_checksums.h"
 
 #include <memory>
 #include <string>
@@ -14,27 +13,6 @@
 namespace {
 
 using namespace flightwatt;
-
-/// Puts the checksum of each packet of a known message right.
-std::string with_checksums(std::string bytes) {
-    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
-    for (std::size_t at = 0; at < bytes.size(); ++at) {
-        const auto rest = std::string_view(bytes).substr(at);
-        const auto size = telemetry::mavlink_frame_bytes(rest).value_or(0);
-        if (size == 0 || size > rest.size()) continue;
-        const bool is_v2 = byte(at) == 0xFD;
-        const std::size_t header = is_v2 ? 10 : 6;
-        const std::uint32_t id = is_v2 ? byte(at + 7) | byte(at + 8) << 8U | byte(at + 9) << 16U : byte(at + 5);
-        const auto* message = telemetry::find_mavlink_message(id);
-        if (message == nullptr) continue;
-        const auto checked = header + byte(at + 1);
-        const auto crc = telemetry::mavlink_checksum(rest.substr(1, checked - 1), message->crc_extra);
-        bytes[at + checked] = static_cast<char>(crc & 0xFFU);
-        bytes[at + checked + 1] = static_cast<char>(crc >> 8U);
-        at += size - 1;
-    }
-    return bytes;
-}
 
 void receive(std::string_view bytes, bool is_tlog) {
     fuzz::FlightSink sink;
@@ -46,7 +24,7 @@ void receive(std::string_view bytes, bool is_tlog) {
 }  // namespace
 
 void flightwatt::fuzz::run(std::string_view bytes) {
-    const auto repaired = with_checksums(std::string(bytes));
+    const auto repaired = with_mavlink_checksums(std::string(bytes));
     receive(bytes, false);
     receive(repaired, false);
     receive(repaired, true);
