@@ -247,7 +247,8 @@ class PackDivider {
     bool lands(const CruisePart& part, double margin_percent) const {
         try {
             const auto mission = least(part);
-            const auto summary = simulate(mission, {mission.setup.duration_s[Phase::cruise], search_step_s}).summary;
+            const double output_s = std::max(mission.setup.duration_s[Phase::cruise], search_step_s);
+            const auto summary = simulate(mission, {output_s, search_step_s}).summary;
             return summary.feasible && *summary.final_soc_percent >= summary.reserve_soc_percent + margin_percent;
         } catch (const InputError&) {  // the wind forbids a way, or it is too short for the change of height
             return false;
@@ -304,7 +305,7 @@ class PackDivider {
         const double step_s = std::max(min_part_s, end_s_ / parts_tried);
         double best_s = from_s;
         double beyond_s = end_s_;
-        for (double to_s = end_s_; to_s > from_s && best_s == from_s; to_s -= step_s) {
+        for (double to_s = end_s_; to_s > from_s + same_s && best_s == from_s; to_s -= step_s) {
             if (lands({{from_s, to_s}, pack}, margin_percent))
                 best_s = to_s;
             else

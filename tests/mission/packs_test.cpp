@@ -336,6 +336,26 @@ TEST(PackFlights, AreNotPossibleWhereNoPackGetsFurther) {
     EXPECT_NE(describe(all).find("no number of packs would do"), std::string::npos) << describe(all);
 }
 
+/// Of 200 parts of such a cruise, 200 times the difference leaves 1e-12 s: a step of output was refused that nobody asked
+/// for, where the charge that is tried for all flights is more than any part of the cruise leaves.
+TEST(PackFlights, AreFoundWhereNoPartOfTheCruiseKeepsTheChargeThatIsTried) {
+    for (const double cruise_s : {777.0, 555.0}) {
+        const auto all = fly_packs(read(fmt::format(R"(
+mechanical = "fits/mechanical/synthetic-wing.toml"
+battery = "fits/battery/synthetic-3s.toml"
+reserve_soc_percent = 60
+duration_s = {{ cruise = {} }}
+[packs]
+count = 3
+change_s = 60
+)",
+                                                    cruise_s)));
+        EXPECT_TRUE(all.suffice) << describe(all);
+        ASSERT_EQ(all.flights.size(), 1U);
+        EXPECT_EQ(all.flights.front().cruise_to_s, cruise_s);
+    }
+}
+
 TEST(PackFlights, ArePlannedEachOnItsOwn) {
     const auto all = fly_packs(
         read_mission(test::source_dir() / "missions/synthetic/several-packs.toml", {.allow_unplanned = true}));
