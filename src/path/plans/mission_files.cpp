@@ -105,6 +105,9 @@ class ItemReader {
                 [[fallthrough]];
             case nav_waypoint:
                 return fly_to(item, waypoint_hold_s(item));
+            case condition_gate:
+                report(item, "the gate is flown through as a waypoint; PX4 flies past one that is beside its way");
+                return fly_to(item, 0.0);
             case nav_delay:
                 return hold(item, parameters[0]);
             case nav_takeoff:

@@ -348,6 +348,29 @@ TEST(MissionFiles, NameMovementsThatAreMissing) {
     EXPECT_EQ(missing_of(item(201, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), Texts{}) << "a camera's target";
 }
 
+/// Surveys of QGroundControl may have gates where they take images: they were left out, with the way between them.
+TEST(MissionFiles, FlyThroughGates) {
+    const auto plan =
+        parse_qgc_plan(qgc(item(4501, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(206, 2, "9, 0, 1, 0, 0, 0, 0") +
+                           "," + item(4501, 3, "0, 0, 0, null, 47.002, 8.0, 60")),
+                       "q.plan", {});
+    ASSERT_EQ(plan.entries.size(), 3U);
+    EXPECT_DOUBLE_EQ(plan.entries[2].geographic->latitude_deg, 47.002);
+    EXPECT_EQ(plan.entries[2].altitude_m, std::optional(60.0));
+    EXPECT_EQ(plan.not_flown.back(),
+              "item 1 and 1 more: the gate is flown through as a waypoint; PX4 flies past one that is beside its way");
+    EXPECT_TRUE(plan.missing.empty());
+}
+
+TEST(MissionFiles, AreUncertainWithCommandsThatFlyToAPlace) {
+    for (const int command : {31000, 31004, 30001}) {
+        const auto plan = parse_qgc_plan(qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," +
+                                             item(command, 3, "0, 0, 0, null, 47.002, 8.0, 60")),
+                                         "q.plan", {});
+        EXPECT_EQ(plan.missing, std::vector{fmt::format("item 2: command {} is not flown", command)});
+    }
+}
+
 TEST(MissionFiles, BeginAtHomeAlsoWithATakeOffElsewhere) {
     const auto from = [](const std::string& takeoff) {
         return parse_qgc_plan(qgc(item(22, 3, takeoff) + "," + item(16, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), "q.plan",
