@@ -42,7 +42,7 @@ class ItemReader {
           settings_(settings),
           home_(place_at(mission.home[0], mission.home[1], "home", mission.where)),
           speed_(mission.speed) {
-        if (std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
+        if (home_ && std::isfinite(mission.home[2])) home_altitude_m_ = mission.home[2];
         const auto planned = std::exchange(home_, settings.home ? settings.home : home_);
         if (home_ && !settings.terrain.empty()) terrain_.emplace(settings.terrain);
         if (terrain_ && planned && home_altitude_m_)

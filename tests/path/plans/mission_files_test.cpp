@@ -407,6 +407,20 @@ TEST(MissionFiles, FlyNoAltitudeAboveTheSeaIfThatOfHomeIsUnknown) {
                   "item 2: the altitude above the sea is not flown, as the plan does not state that of home"});
 }
 
+/// Ground stations write zeros where home is not set: 560 m above the sea were flown as above home.
+TEST(MissionFiles, FlyNoAltitudeAboveTheSeaIfHomeIsNotSet) {
+    auto text = qgc(item(16, 0, "0, 0, 0, 0, 47.001, 8.0, 560") + "," + item(16, 0, "0, 0, 0, 0, 47.002, 8.0, 560"));
+    text.replace(text.find("[47.0, 8.0, 100]"), 16, "[0, 0, 0]");
+    const auto plan = parse_qgc_plan(text, "q.plan", {});
+    EXPECT_FALSE(plan.entries[1].altitude_m);
+    EXPECT_EQ(plan.missing.size(), 1U);
+    const auto lines =
+        parse_wpl("QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t0\t0\t0\t1\n1\t0\t0\t16\t0\t0\t0\t0\t47.001\t8\t560\t1\n",
+                  "w.waypoints", {});
+    EXPECT_FALSE(lines.entries[0].altitude_m);
+    EXPECT_EQ(lines.missing.size(), 1U);
+}
+
 TEST(MissionFiles, OfPx4HaveNoHome) {
     const auto plan = parse_wpl(
         "QGC WPL 110\n0\t1\t3\t22\t15\t0\t0\t0\t47.0\t8.0\t50\t1\n"
