@@ -90,12 +90,21 @@ class ItemReader {
                 fmt::format("{}{}: {}", items.first, more == 0 ? "" : fmt::format(" and {} more", more), text));
             if (items.is_missing) plan.missing.push_back(plan.not_flown.back());
         }
+        if (mission_.is_of_another_vehicle)
+            add_missing("it is for a vehicle that is neither a wing, a multirotor nor a VTOL", plan);
+        if (mission_.is_of_vtol && settings_.is_rotorcraft)
+            add_missing("it is for a VTOL, and the model of a rotorcraft", plan);
         if (!plan.entries.empty()) return plan;
         throw InputError(where, "no item of the mission can be flown",
                          plan.not_flown.empty() ? "it has no items" : plan.not_flown.front());
     }
 
   private:
+    static void add_missing(const char* text, PlanEntries& plan) {
+        plan.not_flown.emplace_back(text);
+        plan.missing.emplace_back(text);
+    }
+
     void fly(const MissionItem& item) {
         constexpr double to_hover = 3.0;  // MAV_VTOL_STATE
         const auto& parameters = item.parameters;

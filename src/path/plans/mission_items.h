@@ -52,6 +52,7 @@ struct MissionItems {
     bool has_rally_points = false;
     std::optional<bool> is_of_multirotor = {};  ///< by the kind of vehicle that the plan names
     bool is_of_vtol = false;                    ///< likewise, or by its commands
+    bool is_of_another_vehicle = false;         ///< likewise: neither of a wing, a multirotor nor a VTOL
 };
 
 }  // namespace flightwatt::path

@@ -80,6 +80,7 @@ class QgcReader {
         constexpr int fixed_wing = 1, first_vtol = 19, last_vtol = 25;  // MAV_TYPE
         mission_.is_of_vtol = is_known && type >= first_vtol && type <= last_vtol;
         if (is_known && (hovers || type == fixed_wing)) mission_.is_of_multirotor = hovers;
+        mission_.is_of_another_vehicle = is_known && !mission_.is_of_multirotor && !mission_.is_of_vtol;
         const auto* key = hovers ? "hoverSpeed" : "cruiseSpeed";
         const auto speed = mission.value(key, Json());
         if (!speed.is_number() || speed == 0.0) return;

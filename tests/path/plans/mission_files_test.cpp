@@ -371,6 +371,21 @@ TEST(MissionFiles, AreUncertainWithCommandsThatFlyToAPlace) {
     }
 }
 
+/// A rover's plan fitted the pack of a wing.
+TEST(MissionFiles, AreUncertainForAnotherKindOfVehicle) {
+    const auto missing = [](int type, bool is_rotorcraft) {
+        auto text = qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60"));
+        text.insert(text.find("\"plannedHome"), fmt::format("\"vehicleType\": {}, ", type));
+        return parse_qgc_plan(text, "q.plan", {.radius_m = {}, .is_rotorcraft = is_rotorcraft}).missing;
+    };
+    using Texts = std::vector<std::string>;
+    constexpr int any = 0, wing = 1, quadrotor = 2, airship = 7, rover = 10, boat = 11, vtol = 20;
+    for (const int type : {airship, rover, boat})
+        EXPECT_EQ(missing(type, false), Texts{"it is for a vehicle that is neither a wing, a multirotor nor a VTOL"});
+    EXPECT_EQ(missing(vtol, true), Texts{"it is for a VTOL, and the model of a rotorcraft"});
+    for (const int type : {any, wing, quadrotor, vtol}) EXPECT_EQ(missing(type, false), Texts{}) << type;
+}
+
 TEST(MissionFiles, BeginAtHomeAlsoWithATakeOffElsewhere) {
     const auto from = [](const std::string& takeoff) {
         return parse_qgc_plan(qgc(item(22, 3, takeoff) + "," + item(16, 3, "0, 0, 0, 0, 47.001, 8.0, 60")), "q.plan",
