@@ -90,6 +90,32 @@ TEST(PathEntries, ReturnNoSteeperThanTheModelsFlights) {
     EXPECT_EQ(far[2].altitude_change_m, -60.0);
 }
 
+/// 300 m on a way of 260 m were climbed at 15 m/s, in 20 s.
+TEST(PathEntries, CircleUntilAnAltitudeIsReachedWhereTheWayIsTooShortForIt) {
+    auto home = defaults();
+    home.altitude_m = 100.0;
+    home.rates_on_spot = {3.0, 2.0};
+    auto up = to(260.0, 0.0);
+    up.altitude_m = 400.0;
+    up.loiters_to_altitude = true;
+    auto down = to(260.0, 2600.0);
+    down.altitude_m = 50.0;
+    down.loiters_to_altitude = true;
+    const auto path = build_path({up, down}, home);
+    ASSERT_EQ(path.elements.size(), 3U) << "the second way is long enough";
+    EXPECT_DOUBLE_EQ(path.elements[0].altitude_change_m, 60.0) << "20 s at 3 m/s";
+    EXPECT_DOUBLE_EQ(path.elements[1].altitude_change_m, 240.0);
+    EXPECT_DOUBLE_EQ(std::get<Hold>(path.elements[1].shape).time_s, 80.0);
+    EXPECT_DOUBLE_EQ(path.elements[2].altitude_change_m, -350.0);
+    down.altitude_m = 0.0;
+    const auto longer = build_path({up, down, to(0.0, 0.0)}, home);
+    EXPECT_DOUBLE_EQ(longer.elements.at(2).altitude_change_m, -400.0) << "200 s at 2 m/s";
+    down.altitude_m = -20.0;
+    EXPECT_DOUBLE_EQ(build_path({up, down}, home).elements.at(3).altitude_change_m, -20.0);
+    home.rates = {3.0, 3.0};
+    EXPECT_EQ(build_path({up, down}, home).elements.size(), 2U) << "at rates that are stated";
+}
+
 TEST(PathEntries, CircleAroundAPlaceFromItsEdge) {
     const auto path = build_path({circles(to(1000.0, 0.0), 2.0, 100.0), to(0.0, 0.0)}, defaults());
     ASSERT_EQ(path.elements.size(), 3U);

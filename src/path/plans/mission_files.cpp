@@ -130,7 +130,9 @@ class ItemReader {
             case nav_loiter_time:
                 return circle(item, parameters[0], true);
             case nav_loiter_to_altitude:
-                report(item, "the circles until an altitude is reached are not flown: the way there changes it");
+                report(item,
+                       "circles until an altitude is reached take the height that the way there is too short for, and "
+                       "are flown straight on");
                 return fly_to(item, 0.0);
             case nav_return:
                 return go_home(item);
@@ -226,6 +228,7 @@ class ItemReader {
     void fly_to(const MissionItem& item, double hold_s) {
         auto entry = entry_at_altitude(item);
         if (hold_s > 0.0) entry.hold_s = hold_s;
+        entry.loiters_to_altitude = item.command == nav_loiter_to_altitude;
         if (!entry.geographic && !entry.hold_s) return report_missing(item, "there is no place: not flown");
         entries_.push_back(entry);
     }

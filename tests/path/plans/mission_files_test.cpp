@@ -371,6 +371,15 @@ TEST(MissionFiles, AreUncertainWithCommandsThatFlyToAPlace) {
     }
 }
 
+TEST(MissionFiles, CircleUntilAnAltitudeIsReached) {
+    const auto plan = parse_qgc_plan(
+        qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(31, 3, "0, 60, 0, 1, 47.002, 8.0, 400")),
+        "q.plan", {});
+    EXPECT_FALSE(plan.entries[1].loiters_to_altitude);
+    EXPECT_TRUE(plan.entries[2].loiters_to_altitude);
+    EXPECT_TRUE(plan.missing.empty());
+}
+
 /// A rover's plan fitted the pack of a wing.
 TEST(MissionFiles, AreUncertainForAnotherKindOfVehicle) {
     const auto missing = [](int type, bool is_rotorcraft) {
