@@ -15,6 +15,7 @@
 #include "path/plan_writer.h"
 #include "stages.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -152,9 +153,17 @@ void write_packs(const cli::StageCall& call, const PlanArguments& arguments, con
         notes.insert(written.notes.begin(), written.notes.end());
         files[folder / plan_name] = std::move(written.text);
         mission::PlannedPack pack{flight.pack, setup.name, plan_name, {}};
-        if (format == path::PlanFormat::flight_plan) pack.blocks = {path::written_block};
-        if (format != path::PlanFormat::qgroundcontrol)
-            pack.airspeed_m_per_s = drawn_path(plan).elements.front().airspeed_m_per_s;
+        const auto& elements = drawn_path(plan).elements;
+        if (format != path::PlanFormat::qgroundcontrol) pack.airspeed_m_per_s = elements.front().airspeed_m_per_s;
+        if (format == path::PlanFormat::flight_plan) {
+            pack.blocks = {path::written_block};
+            const auto [least, most] = std::ranges::minmax(elements, {}, &path::PathElement::airspeed_m_per_s);
+            if (least.airspeed_m_per_s < most.airspeed_m_per_s)
+                notes.insert(
+                    fmt::format("flight plans have no airspeeds: {}.toml flies at {:g} m/s all along, not at {:g} to "
+                                "{:g} m/s as planned: take its energy from {}.json",
+                                name, *pack.airspeed_m_per_s, least.airspeed_m_per_s, most.airspeed_m_per_s, name));
+        }
         files[folder / (name + ".toml")] =
             fmt::format("# {}\n", one_line(describe(flight.flown.simulation.summary))) +
             planned_mission_toml(file.text, file.path, setup.compute, flight.flown.schedule, folder, {}, pack).text;

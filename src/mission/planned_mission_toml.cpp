@@ -169,7 +169,9 @@ void choose_pack(toml::table& root, const PlannedPack& pack) {
     toml::table flown;
     for (const auto* key : {"airspeed_m_per_s", "climb_m_per_s", "descent_m_per_s", "max_bank_deg", "turn_radius_m"})
         if (const auto* value = path.get(key)) flown.insert(key, *value);
-    if (pack.airspeed_m_per_s) flown.insert("airspeed_m_per_s", *pack.airspeed_m_per_s);  // keeps one that is stated
+    const bool changes_speed = pack.blocks.empty();  // by commands of its plan, for which a stated one may remain
+    if (pack.airspeed_m_per_s && !(changes_speed && flown.contains("airspeed_m_per_s")))
+        flown.insert_or_assign("airspeed_m_per_s", *pack.airspeed_m_per_s);
     flown.insert(pack.blocks.empty() ? "waypoints" : "flight_plan", pack.plan_file);
     toml::array blocks;
     for (const auto& block : pack.blocks) blocks.push_back(block);

@@ -25,7 +25,7 @@ struct PlannedPack {
     std::string name;                             ///< of the mission
     std::string plan_file;                        ///< as the mission names it
     std::vector<std::string> blocks;              ///< of a flight plan of Paparazzi
-    std::optional<double> airspeed_m_per_s = {};  ///< if the plan's file has none: the path's, unless that states one
+    std::optional<double> airspeed_m_per_s = {};  ///< if the plan's file has none: with blocks also instead of a stated
 };
 
 /// Returns the mission file `text` (of `path`) with `schedule` instead of its [plan], [policy] and [[schedule]], and with

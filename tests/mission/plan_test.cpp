@@ -239,6 +239,9 @@ TEST(Plan, OfAPackHasTheAirspeedThatItsFileDoesNotState) {
         const PlannedPack pack{1, "m, pack 1", "pack-1.waypoints", {}, 12.5};
         const auto written = planned_mission_toml(text, folder / "m.toml", {}, {}, folder, {}, pack).text;
         EXPECT_NE(written.find(fmt::format("airspeed_m_per_s = {}\n", expected)), std::string::npos) << written;
+        const PlannedPack of_blocks{1, "m, pack 1", "pack-1.xml", {"Flight"}, 12.5};
+        const auto blocks = planned_mission_toml(text, folder / "m.toml", {}, {}, folder, {}, of_blocks).text;
+        EXPECT_NE(blocks.find("airspeed_m_per_s = 12.5\n"), std::string::npos) << "a flight plan has no airspeeds";
     }
 }
 
