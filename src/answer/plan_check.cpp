@@ -283,7 +283,7 @@ class Remedies {
             return add("payload", 0.0, "no payload", flight_.fly(Change{.payload_kg = 0.0}));
         constexpr double steps_per_kg = 1000.0;
         const double kg = std::floor(greatest(0.0, payload_kg, with) * steps_per_kg) / steps_per_kg;
-        add("payload", kg, fmt::format("a payload of {:.3g} kg instead of {:.3g} kg", kg, payload_kg), with(kg));
+        add("payload", kg, fmt::format("a payload of {:g} kg instead of {:g} kg", kg, payload_kg), with(kg));
     }
 
     const PlanFlight& flight_;
