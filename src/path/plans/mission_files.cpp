@@ -10,12 +10,10 @@
 #include "path/plans/terrain.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
