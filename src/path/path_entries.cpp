@@ -43,8 +43,8 @@ class PathBuilder {
     void add(const PathEntry& entry) {
         require_one_meaning(entry);
         change_m_ = altitude_change_m(entry);
-        const double circled_m = circled_height_m(entry);
-        change_m_ -= circled_m;
+        const double there_m = height_there_m(entry);
+        change_m_ -= there_m;
         if (const auto there = place_of(entry)) {
             entry.circles ? fly_to_circle(entry, *there) : fly_to(entry, *there);
         } else if (entry.length_m) {
@@ -52,7 +52,7 @@ class PathBuilder {
         }
         if (entry.circles) circle(entry, place_of(entry));
         if (entry.hold_s) add_element(entry, Hold{*entry.hold_s});
-        change_m_ += circled_m;
+        change_m_ += there_m;
         if (change_m_ != 0.0) change_height(entry);
     }
 
@@ -208,12 +208,12 @@ class PathBuilder {
         change_m_ = 0.0;
     }
 
-    /// What of the change of height is flown in circles at the entry's place, until its altitude is reached.
-    double circled_height_m(const PathEntry& entry) const {
+    /// What of the change of height is flown at the entry's place, until its altitude is reached.
+    double height_there_m(const PathEntry& entry) const {
         const auto there = place_of(entry);
         const auto& on_spot = defaults_.rates_on_spot;
         const auto rate = change_m_ > 0.0 ? on_spot.climb_m_per_s : on_spot.descent_m_per_s;
-        if (!entry.loiters_to_altitude || !there || !rate || rate_of(entry)) return 0.0;
+        if (!entry.waits_for_altitude || !there || !rate || rate_of(entry)) return 0.0;
         const double airspeed = entry.airspeed_m_per_s.value_or(defaults_.airspeed_m_per_s);
         const double on_way_m = *rate * distance_between_m(place_, *there) / airspeed;
         return std::copysign(std::max(0.0, std::abs(change_m_) - on_way_m), change_m_);

@@ -37,7 +37,7 @@ struct PathEntry {
     std::optional<double> duration_s;  ///< measured time of the way there, which replaces the wind triangle
     std::optional<double> altitude_m;  ///< altitude at the end
     bool is_above_terrain = false;     ///< the plan states it above the ground below
-    bool loiters_to_altitude = false;  ///< what the way there is too short for at the rates on the spot changes there
+    bool waits_for_altitude = false;   ///< what the way there is too short for at the rates on the spot changes there
     std::optional<double> airspeed_m_per_s;
     ClimbRates rates;
     std::optional<double> circles;  ///< number of circles around the place, else from the aircraft's position

@@ -91,16 +91,16 @@ TEST(PathEntries, ReturnNoSteeperThanTheModelsFlights) {
 }
 
 /// 300 m on a way of 260 m were climbed at 15 m/s, in 20 s.
-TEST(PathEntries, CircleUntilAnAltitudeIsReachedWhereTheWayIsTooShortForIt) {
+TEST(PathEntries, WaitForAnAltitudeWhereTheWayIsTooShortForIt) {
     auto home = defaults();
     home.altitude_m = 100.0;
     home.rates_on_spot = {3.0, 2.0};
     auto up = to(260.0, 0.0);
     up.altitude_m = 400.0;
-    up.loiters_to_altitude = true;
+    up.waits_for_altitude = true;
     auto down = to(260.0, 2600.0);
     down.altitude_m = 50.0;
-    down.loiters_to_altitude = true;
+    down.waits_for_altitude = true;
     const auto path = build_path({up, down}, home);
     ASSERT_EQ(path.elements.size(), 3U) << "the second way is long enough";
     EXPECT_DOUBLE_EQ(path.elements[0].altitude_change_m, 60.0) << "20 s at 3 m/s";

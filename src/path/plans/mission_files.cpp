@@ -226,7 +226,7 @@ class ItemReader {
     void fly_to(const MissionItem& item, double hold_s) {
         auto entry = entry_at_altitude(item);
         if (hold_s > 0.0) entry.hold_s = hold_s;
-        entry.loiters_to_altitude = item.command == nav_loiter_to_altitude;
+        entry.waits_for_altitude = settings_.is_rotorcraft || item.command == nav_loiter_to_altitude;
         if (!entry.geographic && !entry.hold_s) return report_missing(item, "there is no place: not flown");
         entries_.push_back(entry);
     }

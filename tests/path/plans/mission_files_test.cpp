@@ -371,13 +371,15 @@ TEST(MissionFiles, AreUncertainWithCommandsThatFlyToAPlace) {
     }
 }
 
-TEST(MissionFiles, CircleUntilAnAltitudeIsReached) {
-    const auto plan = parse_qgc_plan(
-        qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(31, 3, "0, 60, 0, 1, 47.002, 8.0, 400")),
-        "q.plan", {});
-    EXPECT_FALSE(plan.entries[1].loiters_to_altitude);
-    EXPECT_TRUE(plan.entries[2].loiters_to_altitude);
-    EXPECT_TRUE(plan.missing.empty());
+/// Multirotors pass a waypoint at its altitude: 90 m on a way of 10 m were climbed at 5 m/s, twice as fast as flown.
+TEST(MissionFiles, WaitForAnAltitude) {
+    const auto text =
+        qgc(item(16, 3, "0, 0, 0, null, 47.001, 8.0, 60") + "," + item(31, 3, "0, 60, 0, 1, 47.002, 8.0, 400"));
+    const auto wing = parse_qgc_plan(text, "q.plan", {});
+    EXPECT_FALSE(wing.entries[1].waits_for_altitude);
+    EXPECT_TRUE(wing.entries[2].waits_for_altitude);
+    EXPECT_TRUE(wing.missing.empty());
+    EXPECT_TRUE(parse_qgc_plan(text, "q.plan", {.radius_m = {}, .is_rotorcraft = true}).entries[1].waits_for_altitude);
 }
 
 /// A rover's plan fitted the pack of a wing.
