@@ -259,6 +259,7 @@ PlanEntries parse_kml(std::string_view text, const std::string& file, const Auto
             entry.name = fmt::format("waypoint {}", plan.entries.size());
             entry.where = {file};
             entry.geographic = place;
+            entry.waits_for_altitude = settings.is_rotorcraft;
             if (has_altitude && altitude_m) {
                 set_value(entry, entry_values.front(), *altitude_m, entry.where);
                 modes.insert(mode);

@@ -163,6 +163,17 @@ TEST(WaypointFiles, OfKmlHaveTheAltitudesOfItsMode) {
               std::string::npos);
 }
 
+TEST(WaypointFiles, OfKmlWaitForTheirAltitudesIfARotorcraftFliesThem) {
+    const auto waits = [](bool is_rotorcraft) {
+        return parse_kml("<kml><LineString><coordinates>8,47,0 8.1,47,0</coordinates></LineString></kml>", "a.kml",
+                         {.radius_m = {}, .is_rotorcraft = is_rotorcraft})
+            .entries.back()
+            .waits_for_altitude;
+    };
+    EXPECT_TRUE(waits(true));
+    EXPECT_FALSE(waits(false));
+}
+
 /// Such a plan with tiles of the terrain was refused.
 TEST(WaypointFiles, OfKmlFollowTheTerrain) {
     const auto folder = std::filesystem::path(testing::TempDir()) / "kml-terrain";
