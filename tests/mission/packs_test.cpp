@@ -336,8 +336,8 @@ TEST(PackFlights, AreNotPossibleWhereNoPackGetsFurther) {
     EXPECT_NE(describe(all).find("no number of packs would do"), std::string::npos) << describe(all);
 }
 
-/// Of 200 parts of such a cruise, 200 times the difference leaves 1e-12 s: a step of output was refused that nobody asked
-/// for, where the charge that is tried for all flights is more than any part of the cruise leaves.
+/// Of 200 parts of such a cruise, 200 times the difference leaves 1e-12 s: a step of output was refused that was not
+/// asked for, where the charge that is tried for all flights is more than any part of the cruise leaves.
 TEST(PackFlights, AreFoundWhereNoPartOfTheCruiseKeepsTheChargeThatIsTried) {
     for (const double cruise_s : {777.0, 555.0}) {
         const auto all = fly_packs(read(fmt::format(R"(

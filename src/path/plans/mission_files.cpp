@@ -113,7 +113,7 @@ class ItemReader {
             case nav_waypoint:
                 return fly_to(item, waypoint_hold_s(item));
             case condition_gate:
-                report(item, "the gate is flown through as a waypoint; PX4 flies past one that is beside its way");
+                report(item, "the gate is flown through as a waypoint; PX4 flies past one that is off its way");
                 return fly_to(item, 0.0);
             case nav_delay:
                 return hold(item, parameters[0]);

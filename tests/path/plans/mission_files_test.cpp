@@ -358,7 +358,7 @@ TEST(MissionFiles, FlyThroughGates) {
     EXPECT_DOUBLE_EQ(plan.entries[2].geographic->latitude_deg, 47.002);
     EXPECT_EQ(plan.entries[2].altitude_m, std::optional(60.0));
     EXPECT_EQ(plan.not_flown.back(),
-              "item 1 and 1 more: the gate is flown through as a waypoint; PX4 flies past one that is beside its way");
+              "item 1 and 1 more: the gate is flown through as a waypoint; PX4 flies past one that is off its way");
     EXPECT_TRUE(plan.missing.empty());
 }
 
