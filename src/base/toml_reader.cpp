@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -62,9 +63,36 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     return nearest;
 }
 
+namespace {
+
+/// The unit that a name ends with, in small letters: "ft" of "altitude_ft", "m/s" of "climb_m_per_s"; empty: none.
+std::string unit_in_name(std::string_view name) {
+    static constexpr auto units = std::to_array<std::string_view>(
+        {"m",  "km",  "cm",  "mm",   "ft", "feet", "s",   "ms",  "us",  "min",     "h",   "v",     "mv",  "a",   "ma",
+         "ah", "mah", "w",   "kw",   "mw", "wh",   "mwh", "kwh", "j",   "kj",      "kg",  "g",     "deg", "rad", "c",
+         "f",  "k",   "m/s", "cm/s", "kt", "km/h", "kmh", "kph", "mph", "percent", "kts", "knots", "ohm", "mohm"});
+    std::string text(name);
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (const auto per = text.find("_per_"); per != std::string::npos) text.replace(per, 5, "/");
+    const auto at = text.rfind('_');
+    const auto unit = at == std::string::npos ? std::string() : text.substr(at + 1);
+    return std::ranges::find(units, unit) == units.end() ? std::string() : unit;
+}
+
+/// "did you mean 'altitude_m'?", and that its values have another unit, where the names say so.
+std::string meant_text(std::string_view word, const std::string& near) {
+    const auto unit = unit_in_name(word);
+    const auto meant = unit_in_name(near);
+    const bool is_other = !unit.empty() && !meant.empty() && unit != meant;
+    return fmt::format("did you mean '{}'?", near) +
+           (is_other ? fmt::format(" its values are in {}, not in {}: convert them", meant, unit) : "");
+}
+
+}  // namespace
+
 std::string meant_or(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
     const auto near = nearest_word(word, known);
-    return near.empty() ? std::string(otherwise) : fmt::format("did you mean '{}'?", near);
+    return near.empty() ? std::string(otherwise) : meant_text(word, near);
 }
 
 namespace {
@@ -153,7 +181,7 @@ namespace {
     std::map<std::string, std::string> known_keys;
     for (const auto& [where, key, near, table, known] : unknown) {
         const auto place = fmt::format(" in line {}", where.line);
-        const auto meant = near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near);
+        const auto meant = near.empty() ? "" : fmt::format(" ({})", meant_text(key, near));
         names.push_back(fmt::format("'{}'{}{}", truncated(key), place, meant));
         if (near.empty())
             known_keys[table] = fmt::format("known keys{}: {}", table.empty() ? "" : fmt::format(" of [{}]", table),
@@ -166,7 +194,7 @@ namespace {
         throw InputError(first.where, fmt::format("{} unknown keys: {}", unknown.size(), fmt::join(names, ", ")),
                          fmt::format("{}", fmt::join(hints, "; ")));
     throw InputError(first.where, fmt::format("unknown key '{}'", first.key),
-                     first.near.empty() ? hints.front() : fmt::format("did you mean '{}'?", first.near));
+                     first.near.empty() ? hints.front() : meant_text(first.key, first.near));
 }
 
 /// A remedy for errors of the TOML parser, which names the grammar alone.

@@ -377,6 +377,8 @@ TEST_F(ReadFlight, RefusesBadSeriesWithTheirPlace) {
               "/s.csv:3:1: time_s = 1 does not rise from 1; sort the rows by time and remove repeated times");
     EXPECT_THAT(at("time_s,power_kw\n1,2\n"), HasSubstr("has no column 'power_w'; its columns are time_s, power_kw"));
     EXPECT_THAT(at("time_s,power_w,altitud_m\n1,2,3\n"), HasSubstr("did you mean 'altitude_m'?"));
+    EXPECT_THAT(at("time_s,power_w,altitude_ft\n1,2,3\n"),
+                HasSubstr("did you mean 'altitude_m'? its values are in m, not in ft: convert them"));
     EXPECT_THAT(at("time_s,power_w\n1,2\n"), HasSubstr("fewer than two samples"));
     EXPECT_THAT(at("time_s,power_w,power_w\n1,2,3\n2,2,3\n"), HasSubstr("duplicate column 'power_w'"));
 }

@@ -196,6 +196,8 @@ const BadMission bad_missions[] = {
      "or write the file with this one"},
     {"initial_soc", "cutoff_voltage = 9\ninitial_soc",
      "m.toml:5:1: unknown key 'cutoff_voltage'; did you mean 'cutoff_voltage_v'?"},
+    {"initial_soc", "payload_g = 9\ninitial_soc",
+     "m.toml:5:1: unknown key 'payload_g'; did you mean 'payload_kg'? its values are in kg, not in g: convert them"},
     {"cruise = 600", "cruise = -1", "m.toml:3:30: cruise = -1, expected 0.001 to 10000000; or 0: not flown"},
     {"cruise = 600, ", "", "m.toml:3:14: has no key 'cruise'"},
     {"cruise = 600, ", "cruis = 600, ", "m.toml:3:30: has no key 'cruise'; 'cruis' is here; was that meant?"},
