@@ -187,9 +187,12 @@ std::optional<ColumnMap> column_map_of(std::string_view csv, const std::filesyst
         if (!map.header.empty() && std::ranges::all_of(map.header, occurs) &&
             find_csv_header(csv, file.string(), map.header).has_all)
             return map;
-    throw InputError({file.string(), header.dialect.lines_before + 1}, "has no column 'time_s'",
-                     fmt::format("its columns are {}; a column map names their tracks: --columns MAP.toml",
-                                 short_list(header.columns)));
+    throw InputError(
+        {file.string(), header.dialect.lines_before + 1}, "has no column 'time_s'",
+        fmt::format("its columns are {}; name them time_s, voltage_v, current_a (or power_w), altitude_m, with "
+                    "values in these units, or state which they are in a column map: --columns MAP.toml "
+                    "(docs/formats.md, Column map)",
+                    short_list(header.columns)));
 }
 
 bool is_flight_csv(const std::filesystem::path& file, const std::optional<std::filesystem::path>& columns) {

@@ -145,7 +145,7 @@ std::string read_data_file(const std::filesystem::path& path, std::size_t max_by
     require_regular_file(path);
     auto bytes = read_bytes(InputFile(path), max_bytes);
     if (bytes.empty()) {
-        throw InputError({path.string()}, "is empty, expected telemetry lines: TIME SENDER NAME FIELD ...");
+        throw InputError({path.string()}, "is empty, expected a log", "nothing was logged, or it was not copied");
     }
     if (bytes.starts_with("PK\x03\x04"sv)) {
         throw InputError({path.string()}, "is a ZIP archive", "unpack it, or compress with gzip, xz or zstd");

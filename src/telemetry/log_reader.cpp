@@ -92,6 +92,10 @@ TelemetryLog read_telemetry(std::string_view text, const std::filesystem::path& 
                             std::optional<LogConfiguration> configuration, const std::vector<MessageRequest>& wanted) {
     auto log = parse_telemetry(text, data_file, std::move(configuration), wanted);
     if (log.senders.empty() && count_messages(text).empty()) {
+        if (data_file.filename().string().find(".data") == std::string::npos)  // not called a log of Paparazzi
+            throw InputError({data_file.string()}, "is no log that is known",
+                             "expected a .bin or .log of ArduPilot, .ulg of PX4, .tlog of MAVLink, .data of Paparazzi, "
+                             "or a table (CSV)");
         throw InputError({data_file.string(), 1}, fmt::format("has no telemetry in its {} lines", log.lines),
                          "expected lines such as '335.149 20 ENERGY 69 11.7 3.1 36.6 0.03 0.31'");
     }

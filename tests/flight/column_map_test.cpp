@@ -101,8 +101,9 @@ TEST(ColumnMap, OfAnUnknownHeaderIsAskedFor) {
     const auto folder = test::scratch_dir();
     const auto file = test::write_text(folder / "f.csv", "t,u,i,down\n1,2,3,4\n2,3,4,5\n");
     EXPECT_EQ(test::rejected([&] { FlightFile{file}; }, folder),
-              "f.csv:1: has no column 'time_s'; its columns are t, u, i, down; a column map names their tracks: "
-              "--columns MAP.toml");
+              "f.csv:1: has no column 'time_s'; its columns are t, u, i, down; name them time_s, voltage_v, current_a "
+              "(or power_w), altitude_m, with values in these units, or state which they are in a column map: "
+              "--columns MAP.toml (docs/formats.md, Column map)");
     EXPECT_FALSE(is_flight_csv(file, std::nullopt));
     LoadOptions options;
     options.columns = test::write_text(folder / "map.toml", small_map);

@@ -149,6 +149,8 @@ TEST(TelemetryLog, RefusesTextsWithoutTelemetry) {
     const std::string rubbish("\x7F\x45LF\0\1 \2 \3\n\0\0\0 x y", 18);
     EXPECT_THAT(test::rejected([&] { read_telemetry(rubbish, "rubbish.data", std::nullopt, energy); }),
                 HasSubstr("has no telemetry"));
+    EXPECT_THAT(test::rejected([&] { read_telemetry(rubbish, "rubbish.bin", std::nullopt, energy); }),
+                HasSubstr("rubbish.bin: is no log that is known; expected a .bin or .log of ArduPilot"));
 }
 
 TEST(TelemetryLog, ReadsTheRealLogs) {
