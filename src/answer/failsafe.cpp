@@ -156,6 +156,17 @@ std::optional<FailsafeAction> make_action(const Fleet& fleet, bool is_return, do
     return action;
 }
 
+/// Why an action has no threshold: in how many of the drawn flights the full pack does not suffice `for_what`.
+std::string shortfall(const Fleet& fleet, bool is_return, double keep_percent, const char* for_what) {
+    const auto text = fmt::format("the full pack does not suffice {}", for_what);
+    const double share = fleet.share_of(
+        [&](std::size_t i) { return needed_percent(fleet.draws[i], is_return, keep_percent) > full_percent; });
+    constexpr double nearly_all = 0.995;
+    if (share > nearly_all) return text;
+    return fmt::format("in {:.2g} of 100 flights, drawn as uncertain as power and pack are known, {}",
+                       units::percent_per_whole * share, text);
+}
+
 /// The way home, or why it is not known.
 struct WayHome {
     std::optional<double> distance_m = {};
@@ -372,15 +383,17 @@ FailsafeCard make_failsafe_card(const FailsafeRequest& request) {
     card.reserve_percent = reserve_percent;
     card.probability = request.probability;
     card.chances_known = fleet.chances_known;
-    const auto critical = make_action(fleet, false, critical_reserve_part * reserve_percent, request.probability);
-    if (!critical) throw NoResultError("the full pack does not suffice to land with half of the reserve");
+    const double critical_percent = critical_reserve_part * reserve_percent;
+    const auto critical = make_action(fleet, false, critical_percent, request.probability);
+    if (!critical) throw NoResultError(shortfall(fleet, false, critical_percent, "to land with half of the reserve"));
     card.critical = *critical;
     card.low_missing = way.missing;
+    card.home_distance_m = way.distance_m;
     if (way.missing.empty()) {
-        card.home_distance_m = way.distance_m;
         card.home_duration_s = way.duration_s;
         card.low = make_action(fleet, true, reserve_percent, request.probability);
-        if (!card.low) card.low_missing = "the full pack does not suffice to return from there with the reserve";
+        if (!card.low)
+            card.low_missing = shortfall(fleet, true, reserve_percent, "to return from there with the reserve");
     }
     if (card.low) {
         const double used_ah = fleet.capacity_ah - card.low->remaining_mah * units::milli;

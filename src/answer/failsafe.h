@@ -93,7 +93,7 @@ struct FailsafeCard {
     double reserve_percent = 0.0;
     double probability = 0.0;
     bool chances_known = true;              ///< false: nothing shows how the power of flights differs
-    std::optional<double> home_distance_m;  ///< of the low action
+    std::optional<double> home_distance_m;  ///< the farthest place; absent: unknown
     std::optional<double> home_duration_s;  ///< as planned
     std::optional<FailsafeAction> low;      ///< return
     std::string low_missing;                ///< the reason why it is absent

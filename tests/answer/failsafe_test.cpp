@@ -236,6 +236,7 @@ TEST(FailsafeCard, HasNoLowActionWithoutItsInputs) {
 
     request.wind.speed_m_per_s = 14.0;
     EXPECT_THAT(make_failsafe_card(request).low_missing, HasSubstr("no way home"));
+    EXPECT_EQ(make_failsafe_card(request).home_distance_m, 1500.0);
 
     request.wind.speed_m_per_s = 5.0;
     request.home_distance_m = 100e3;

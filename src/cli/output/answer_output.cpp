@@ -54,7 +54,7 @@ Fields<FailsafeCard> record_fields(const FailsafeCard*) {
             field("reserve_percent", &R::reserve_percent, "to be left at landing"),
             field("probability", &R::probability, "with which an action is early enough"),
             field("probability_is_known", &R::chances_known, "false: nothing shows how the power of flights differs"),
-            field("home_distance_m", &R::home_distance_m, "farthest place; null: no value"),
+            field("home_distance_m", &R::home_distance_m, "farthest place; null: unknown"),
             field("home_duration_s", &R::home_duration_s, "of the way home, as planned"),
             field("low", &R::low, "return in time; null: no value"),
             field("low_missing", &R::low_missing, "why there is no value; empty: there is"),
@@ -222,20 +222,26 @@ std::string failsafe_line(const AircraftAnswer& answer) {
         text += fmt::format(" at {} ({})", speed_text(*home.value), home.basis);
     text += "; " + action_text("land", card.critical);
     if (!card.monitors.empty()) text += "; " + card.monitors;
-    if (!card.chances_known) text += "; chances unknown: two more flights would show how flights differ";
+    const auto& no_chance = answer.endurance.time_95_s.unknown;
+    if (!card.chances_known)
+        text +=
+            "; chances unknown: " + (no_chance.empty() ? "two more flights would show how flights differ" : no_chance);
     return text;
 }
 
 std::string failsafe_command(const AircraftAnswer& answer) {
     if (!answer.failsafe) return "";
     const auto& card = *answer.failsafe;
+    const std::string own = answer.name.starts_with("PX4") ? "px4" : "ardupilot";
+    std::vector<std::string> others{"ardupilot", "px4", "inav", "paparazzi"};
+    std::erase(others, own);
     // Of the mission, which has the payload and the reserve that were asked for.
-    auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-ardupilot", answer.folder);
-    if (card.low) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
+    auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-{}", answer.folder, own);
+    if (card.home_distance_m) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
     if (const auto& home = answer.endurance.return_airspeed_m_per_s; home.value)
         command += fmt::format(" --airspeed {:.2f}", *home.value);
-    return "; written by " + command + " (or -px4, -inav, -paparazzi)";
+    return fmt::format("; written by {} (or -{})", command, fmt::join(others, ", -"));
 }
 
 }  // namespace

@@ -40,6 +40,20 @@ TEST(AnswerText, EachActionHasItsOwnChanceOfBeingTooLate) {
     answer.failsafe->chances_known = false;
     for (auto* action : {&*answer.failsafe->low, &answer.failsafe->critical}) action->too_late.reset();
     EXPECT_THAT(text_of(answer), HasSubstr("1209 mAh left; chances unknown: two more flights would show"));
+    answer.endurance.time_95_s = answer::unknown("the model does not show it");
+    EXPECT_THAT(text_of(answer), HasSubstr("chances unknown: the model does not show it; written by"));
+}
+
+TEST(AnswerText, FailsafeIsWrittenForTheAutopilotOfTheLogsAndTheWayHome) {
+    auto answer = answered();
+    EXPECT_THAT(text_of(answer), HasSubstr("--format failsafe-ardupilot --home-distance 500 --airspeed 12.00 (or -px4, "
+                                           "-inav, -paparazzi)"));
+    answer.name = "PX4";
+    EXPECT_THAT(text_of(answer), HasSubstr("--format failsafe-px4 --home-distance 500 --airspeed 12.00 (or -ardupilot, "
+                                           "-inav, -paparazzi)"));
+    answer.failsafe->low.reset();
+    answer.failsafe->low_missing = "12 m/s make no way home";
+    EXPECT_THAT(text_of(answer), HasSubstr("failsafe-px4 --home-distance 500")) << "or the file has another reason";
 }
 
 TEST(AnswerText, AssumedSpeedOfTheWayHomeIsNamed) {

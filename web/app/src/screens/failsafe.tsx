@@ -135,7 +135,7 @@ function Parameters({ project, aircraft, answered, autopilot, is_old }: Failsafe
 }
 
 export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafeProps) {
-  const [chosen, setChosen] = useState<Autopilot>(autopilots[0]);
+  const [chosen, setChosen] = useState<Autopilot>(autopilots[answered.answer.aircraft_name.startsWith("PX4") ? 1 : 0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
   const in_new = card?.low?.probability_too_late_interval_95;
   const home_m = aircraft.question.home_m ?? card?.home_distance_m;
