@@ -39,9 +39,12 @@ std::string flights_text(std::size_t flights) {
 
 /// What a power rests on: the flights' own mean, or the physical model or an assumption that changes it.
 std::string power_basis(const KnownAircraft& aircraft, const Question& question) {
-    auto measured = fmt::format("measured on {}", flights_text(aircraft.model.flights.size()));
-    if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) return measured;
-    auto basis = "physics, from power and motion " + measured;
+    const auto flights = aircraft.model.flights.size();
+    if (!mission_airspeed_m_per_s(aircraft, question) && !question.payload_kg) {
+        const auto whole = aircraft.model.phases[Phase::cruise].flights;  // 0: the file does not state it
+        return fmt::format("measured on {}", flights_text(whole > 0 ? whole : flights));
+    }
+    auto basis = "physics, from power and motion measured on " + flights_text(flights);
     if (aircraft.model.is_rotorcraft && question.wind_m_per_s > 0.0)
         basis += "; assumed: those flights were in calm air";
     return basis;

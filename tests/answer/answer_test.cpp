@@ -51,6 +51,16 @@ TEST_F(AnswerTest, TimeIsTheChargeAboveTheReserveOverThePower) {
     EXPECT_GT(endurance.time_95_s.value.value(), 0.8 * *endurance.time_s.value);
 }
 
+TEST_F(AnswerTest, PowerRestsOnTheFlightsWhoseCruiseIsWhole) {
+    auto aircraft = aircraft_of(100.0, 5.0);
+    aircraft.model.phases[Phase::cruise].flights = 1;
+    aircraft.model.phases[Phase::cruise].level_spread.reset();
+    write_file_atomically(aircraft.model_file, to_toml(aircraft.model));
+    const auto endurance = answer_endurance(aircraft, {});
+    EXPECT_EQ(endurance.power_w.basis, "measured on 1 flight");
+    EXPECT_THAT(endurance.time_95_s.unknown, HasSubstr("in cruise, as one flight alone shows the whole of it"));
+}
+
 TEST_F(AnswerTest, OneFlightHasNoTimeIn95Of100) {
     const auto endurance = answer_endurance(aircraft_of(100.0, 5.0, 1), {});
     EXPECT_TRUE(endurance.time_s.value);

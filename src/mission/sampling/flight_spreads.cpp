@@ -215,11 +215,14 @@ MeanPowerDeviation level_deviation(const MissionSetup& mission, Phase phase) {
 void require_flight_variability(const MissionSetup& mission) {
     for (const auto phase : all_phases) {
         if (!(mission.duration_s[phase] > 0.0) || level_deviation(mission, phase).is_between_flights) continue;
-        throw InputError(
-            {mission.file},
-            fmt::format("the mechanical model does not show how the power of flights differs in {}", phase_word(phase)),
-            "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
-            "[uncertainty] with level_sd_percent");
+        throw InputError({mission.file},
+                         fmt::format("the mechanical model does not show how the power of flights differs in {}{}",
+                                     phase_word(phase),
+                                     mission.mechanical && mission.mechanical->phases[phase].flights == 1
+                                         ? ", as one flight alone shows the whole of it"
+                                         : ""),
+                         "fit it to two flights or more (flightwatt fit FLIGHT... -o MODEL.toml), or state it: "
+                         "[uncertainty] with level_sd_percent");
     }
 }
 
