@@ -69,7 +69,8 @@ struct KnownFile {
 /// In the order of the search. A recording of MAVLink begins with a time of this century in microseconds.
 const std::vector<KnownFile>& known_files() {
     using enum FileKind;
-    constexpr auto path_remedy = "a mission names it in its [path]; `flightwatt new-mission` writes a mission";
+    constexpr auto path_remedy =
+        "`flightwatt check` answers whether it fits, `flightwatt new-mission --plan` makes a mission of it";
     static const std::vector<KnownFile> files{
         {foreign, "a bag of ROS", "", "^#ROSBAG"},
         {foreign, "a blackbox log of Betaflight or INAV", "", "^H Product:Blackbox"},
@@ -78,6 +79,7 @@ const std::vector<KnownFile>& known_files() {
         {foreign, "an SQLite database", "", "^SQLite format 3"},
         {foreign, "a PDF document", "", "^%PDF"},
         {foreign, "a picture", "", "^\x89PNG"},
+        {foreign, "a picture", "", "^\xFF\xD8\xFF"},
         {foreign, "a program", "",
          "^\x7F"
          "ELF"},
@@ -98,6 +100,9 @@ const std::vector<KnownFile>& known_files() {
         {foreign, "a plan of QGroundControl", path_remedy, "\"fileType\""},
         {foreign, "a JSON file", "", R"(^\s*\{)"},
         {foreign, "a list of waypoints of ArduPilot", path_remedy, "^QGC WPL"},
+        {plan, "a plan",
+         "expected a .plan, .waypoints, .kml or .geojson, a flight plan of Paparazzi (.xml), or a CSV of waypoints",
+         ""},
         {table, "a table (CSV)", "", R"(^(#[^\n]*\n)*[^#=\n]*,)"}};
     return files;
 }
@@ -206,10 +211,12 @@ FileKind kind_of_text(std::string_view text) {
 
 void require_kind(std::string_view text, FileKind expected, const std::string& file) {
     const auto& wanted = *std::ranges::find(known_files(), expected, &KnownFile::kind);
-    const bool has_columns = expected == FileKind::log || expected == FileKind::profile;
-    if (!has_columns && text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    const bool has_columns = expected == FileKind::log || expected == FileKind::profile || expected == FileKind::plan;
+    if ((!has_columns || expected == FileKind::plan) && text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         throw InputError({file}, fmt::format("is empty, expected {}", wanted.name), wanted.remedy);
     const auto* found = find_known_file(text);
+    if (expected == FileKind::plan && found != nullptr && found->kind == FileKind::unknown)
+        throw InputError({file}, "is binary, not a plan", wanted.remedy);
     if (found == nullptr || found->kind == expected || found->kind == FileKind::unknown) return;
     if (has_columns && found->kind == FileKind::table) return;
     const bool has_own_remedy = found->kind == FileKind::foreign && !found->remedy.empty();

@@ -48,6 +48,7 @@ enum class FileKind {
     disturbances,
     specification,
     profile,
+    plan,
     log,
     table,
     foreign

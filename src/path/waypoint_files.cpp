@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/input_file.h"
 #include "base/toml_reader.h"
 #include "path/plan_blocks.h"
 #include "path/plans/json_text.h"
@@ -61,6 +62,9 @@ void refuse_other_columns(const CsvTable& table) {
     for (const auto& value : entry_values) known.push_back(value.name);
     for (const auto& column : table.columns) {
         if (std::ranges::find(known, column) != known.end()) continue;
+        if (column == "time_s")
+            throw InputError({table.file, 1}, "has the times of a flight, and is no list of waypoints",
+                             "`flightwatt LOG` answers for a log");
         throw InputError({table.file, 1}, fmt::format("unknown column '{}'", column),
                          fmt::format("known are {}", fmt::join(known, ", ")));
     }
@@ -306,6 +310,7 @@ PlanEntries read_any_waypoints(const std::filesystem::path& path, const Autopilo
         case PlanFormat::flight_plan:
             return parse_kml(text, path.string(), settings);
         default:
+            require_kind(text, FileKind::plan, path.string());
             return {parse_waypoint_csv(text, path.string())};
     }
 }

@@ -143,6 +143,16 @@ TEST(FileKinds, OneTakenForAnotherIsNamed) {
     EXPECT_EQ(refused(pack, FileKind::battery), "");
     EXPECT_EQ(refused("unknown = 1", FileKind::battery), "") << "its reader states what is missing";
     EXPECT_EQ(refused("time_s,power_w\n1,2\n", FileKind::log), "") << "a series";
+    const std::string plans =
+        "; expected a .plan, .waypoints, .kml or .geojson, a flight plan of Paparazzi (.xml), or a CSV of waypoints";
+    EXPECT_EQ(refused("ULog\x01\x12\x35", FileKind::plan), "f: is a log, not a plan" + plans);
+    EXPECT_EQ(refused(mission, FileKind::plan), "f: is a mission, not a plan" + plans);
+    EXPECT_EQ(refused("\x01\x02", FileKind::plan), "f: is binary, not a plan" + plans);
+    EXPECT_EQ(refused("", FileKind::plan), "f: is empty, expected a plan" + plans);
+    EXPECT_EQ(refused("east_m,north_m\n1,2\n", FileKind::plan), "");
+    EXPECT_EQ(refused("{ \"fileType\": \"Plan\" }", FileKind::log),
+              "f: is a plan of QGroundControl, not a log; `flightwatt check` answers whether it fits, `flightwatt "
+              "new-mission --plan` makes a mission of it");
 }
 
 TEST(FileKinds, AreKnownByTheirContent) {

@@ -45,6 +45,8 @@ TEST(WaypointFiles, RefuseOtherCsv) {
     EXPECT_NE(refusal("east_m,north_m,airspeed_m_per_s\n1,1,-3\n").find("w.csv:2:5: airspeed_m_per_s = -3"),
               std::string::npos);
     EXPECT_EQ(refusal("east_m,north_m\n"), "w.csv: has no waypoints");
+    EXPECT_EQ(refusal("time_s,power_w\n1,2\n"),
+              "w.csv:1: has the times of a flight, and is no list of waypoints; `flightwatt LOG` answers for a log");
 }
 
 TEST(WaypointFiles, AreGeoJson) {
