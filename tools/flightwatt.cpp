@@ -6,7 +6,10 @@
 #include "cli/terminal.h"
 #include "stages.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
@@ -144,6 +147,12 @@ bool is_for_answer(const std::string& word) {
     return std::filesystem::exists(word, none) && command_for(word).empty();
 }
 
+/// Whether the arguments are those of `answer`: a log or a folder of logs, perhaps after its options.
+bool are_for_answer(const std::vector<std::string>& words) {
+    return is_for_answer(words.front()) ||
+           (words.front().starts_with('-') && std::any_of(words.begin() + 1, words.end(), is_for_answer));
+}
+
 /// The program without a stage.
 int run_front(const std::string& word) {
     if (word == "--help" || word == "-h") {
@@ -160,6 +169,7 @@ int run_front(const std::string& word) {
     } else {
         if (const auto command = command_for(word); !command.empty())
             throw UsageError(fmt::format("'{}' is not a stage; for such a file: {}", word, command));
+        if (std::filesystem::path(word).has_extension()) read_file(word);  // throws: there is no such file
         throw UsageError(fmt::format("there is no stage, file or folder '{}'; {}", word,
                                      meant_or(word, stage_names(), "flightwatt alone lists them")));
     }
@@ -190,6 +200,6 @@ int main(int argc, char** argv) {
         word = argc > 2 ? argv[2] : "--help";
         if (const auto stage = find_stage(word)) return show_help(*stage);
     }
-    if (is_for_answer(word)) return stages::answer_stage(argc, argv);
+    if (argc > 1 && are_for_answer({argv + 1, argv + argc})) return stages::answer_stage(argc, argv);
     return cli::run_guarded("flightwatt", [&] { return run_front(word); });
 }
