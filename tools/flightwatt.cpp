@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,15 @@ int show_help(const Stage& stage) {
     return stage.run(2, arguments);
 }
 
+/// What shows the kind of a file; not all of it, as logs may be larger than any other file.
+std::string beginning_of(const std::string& file) {
+    std::string bytes(4096, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    return bytes;
+}
+
 /// The stage that a file or folder is for, as a command; empty for logs and their folders, and for what is neither.
 std::string command_for(const std::string& file) {
     const auto name = cli::shell_quoted(file);
@@ -127,7 +137,7 @@ std::string command_for(const std::string& file) {
     if (std::filesystem::exists(std::filesystem::path(file) / "batch.json", none))
         return fmt::format("flightwatt report {} -o report.html", name);
     if (!std::filesystem::is_regular_file(file, none)) return "";
-    switch (kind_of_text(read_file(file))) {
+    switch (kind_of_text(beginning_of(file))) {
         case FileKind::mission:
             return fmt::format("flightwatt simulate {}", name);
         case FileKind::mechanical_model:
