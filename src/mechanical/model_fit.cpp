@@ -182,7 +182,7 @@ ModelFit fit_model(std::span<const FlightSamples> flights, const ModelFitOptions
     if (flights.empty())
         throw NoResultError(
             "no flight is left to fit: the messages state why each is left out; those with power faults are used by "
-            "--keep NAME, else add a log of a whole flight, from take-off to landing");
+            "--keep NAME, those of a simulator by --simulated; else add a log of a whole flight, from take-off to landing");
     const auto names = names_of(flights);
     ModelFit parts;
     auto& model = parts.model;

@@ -174,6 +174,7 @@ TEST(ModelFit, KeepsWhatItsSpreadIsOf) {
 
 TEST(ModelFit, RefusesWhatHasNoAnswer) {
     auto flights = made_up_flights(2, 0.2, 7);
+    EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("those of a simulator by --simulated"));
     EXPECT_THAT(message_of<NoResultError>({}), HasSubstr("no flight is left to fit"))
         << "not that a take-off is missing: power faults leave out whole flights";
     auto without = flights;

@@ -303,7 +303,10 @@ std::string aircraft_line(const AircraftAnswer& answer) {
 }
 
 std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer) {
-    if (!answer.no_answer.empty()) return {{"No answer", answer.no_answer, ""}};
+    if (const auto& why = answer.no_answer; !why.empty()) {
+        const bool lacks_subject = why.starts_with("has ") || why.starts_with("is ");  // messages begin with the file
+        return {{"No answer", (lacks_subject ? "the log " : "") + why, ""}};
+    }
     std::vector<AnswerLine> lines;
     std::set<std::string> given;
     const auto add = [&](const std::string& label, const std::string& text, const std::string& on_terminal = "") {

@@ -56,6 +56,14 @@ TEST(AnswerText, FailsafeIsWrittenForTheAutopilotOfTheLogsAndTheWayHome) {
     EXPECT_THAT(text_of(answer), HasSubstr("failsafe-px4 --home-distance 500")) << "or the file has another reason";
 }
 
+TEST(AnswerText, AReasonWithoutASubjectIsThatOfTheLog) {
+    AircraftAnswer answer;
+    answer.no_answer = "has no flight in 4 s; no motion";
+    EXPECT_THAT(text_of(answer), HasSubstr("No answer the log has no flight in 4 s; no motion"));
+    answer.no_answer = "no flight has measured power";
+    EXPECT_THAT(text_of(answer), HasSubstr("No answer no flight has measured power"));
+}
+
 TEST(AnswerText, AssumedSpeedOfTheWayHomeIsNamed) {
     auto answer = answered();
     EXPECT_THAT(text_of(answer), Not(HasSubstr("from 500 m at")));
