@@ -70,7 +70,7 @@ test("columns of a table of flights that no flight has are left out", () => {
 test("plots of a flight begin at lift-off, and only what the log has is plotted", () => {
   const detail = { phases: [{ sortie: 1, phase: "takeoff", start_s: 60, end_s: 90, complete: true }], power: { time_s: [0, 60, 120], power_w: [0, 30, null], model_power_w: [null, 28, 27] }, voltage: null, current: null, altitude: { time_s: [0, 120], altitude_m: [0, 40] }, throttle: null, airspeed: null };
   const plots = app.plotsOf(detail);
-  assert.deepEqual(plots.map(({ title }) => title), ["Power [W]", "Height [m]"]);
+  assert.deepEqual(plots.map(({ title }) => title), ["Power [W]", "Altitude [m]"]);
   assert.deepEqual(plots[0].x, [-1, 0, 1]);
   assert.deepEqual(plots[0].lines.map(({ name }) => name), ["measured", "model"]);
 });

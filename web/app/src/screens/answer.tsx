@@ -348,7 +348,6 @@ function PackHealth({ answer }: { answer: Answer }) {
         <Verdict grade={healthGrade[pack.health] ?? "none"}>{healthWord[pack.health] ?? pack.health}</Verdict>
       </p>
       <p class="small">
-        {pack.resistance_ohm != null && `${quantity(1000 * pack.resistance_ohm, 0, "mΩ")}. `}
         {pack.reason}
       </p>
     </Card>

@@ -115,7 +115,7 @@ const shown_tracks = [
   { column: "power_w", title: "Power [W]", unit: "W", decimals: 0, colour: "ink" },
   { column: "voltage_v", title: "Voltage [V]", unit: "V", decimals: 1, colour: "cruise" },
   { column: "current_a", title: "Current [A]", unit: "A", decimals: 1, colour: "take-off" },
-  { column: "altitude_m", title: "Height [m]", unit: "m", decimals: 0, colour: "landing" },
+  { column: "altitude_m", title: "Altitude [m]", unit: "m", decimals: 0, colour: "landing" },
   { column: "throttle_percent", title: "Throttle [%]", unit: "%", decimals: 0, colour: "ink2" },
 ];
 const phase_colours: Record<string, string> = { takeoff: "take-off", cruise: "cruise", landing: "landing" };

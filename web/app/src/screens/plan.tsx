@@ -646,7 +646,7 @@ function PlanFacts({ flown }: { flown: FlownPlan }) {
     ["Way", flown.path ? distance(flown.path.length_m) : null],
     ["Time", duration(flown.curve.simulation.duration_s)],
     ["Energy", quantity(flown.curve.simulation.energy_wh, 1, "Wh")],
-    ["Power", flown.path ? quantity(flown.path.mechanical_w, flown.path.mechanical_w < 100 ? 1 : 0, "W") : null],
+    ["Power on the way", flown.path ? quantity(flown.path.mechanical_w, flown.path.mechanical_w < 100 ? 1 : 0, "W") : null],
     ["Turns", flown.is_area && turns > 0 ? String(turns) : null],
   ];
   return (

@@ -32,7 +32,7 @@ export function plotsOf(detail: FlightDetail): FlightPlot[] {
     ]),
     plot("Voltage [V]", "V", 2, voltage, [voltage && { name: "voltage", colour: "cruise", y: voltage.voltage_v }]),
     plot("Current [A]", "A", 1, current, [current && { name: "current", colour: "take-off", y: current.current_a }]),
-    plot("Height [m]", "m", 0, altitude, [altitude && { name: "height", colour: "landing", y: altitude.altitude_m }]),
+    plot("Altitude [m]", "m", 0, altitude, [altitude && { name: "altitude", colour: "landing", y: altitude.altitude_m }]),
     plot("Airspeed [m/s]", "m/s", 1, airspeed, [airspeed && { name: "airspeed", colour: "link", y: airspeed.airspeed_m_per_s }]),
     plot("Throttle [%]", "%", 0, throttle, [throttle && { name: "throttle", colour: "ink2", y: throttle.throttle_percent }]),
   ].filter((one): one is FlightPlot => one != null);
