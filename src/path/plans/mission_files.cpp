@@ -146,8 +146,7 @@ class ItemReader {
                 hovers_ = parameters[0] == to_hover && !settings_.is_rotorcraft;
                 return;
             default: {
-                const auto text =
-                    item.command == 0 ? std::string("not flown") : fmt::format("command {} is not flown", item.command);
+                const auto text = unflown_text(item.command);
                 is_movement(item.command) ? report_missing(item, text) : report(item, text);
             }
         }

@@ -28,6 +28,16 @@ inline bool is_movement(int command) {
            (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
 }
 
+/// Returns what is said of a command that is not flown, and of those of a camera, gimbal or shutter that nothing is lost.
+inline std::string unflown_text(int command) {
+    constexpr std::array of_camera{195, 196, 197, 200,  201,  202,  203,  204,  205, 206,
+                                   530, 531, 532, 1000, 1001, 2000, 2001, 2500, 2501};
+    if (command == 0) return "not flown";
+    if (std::ranges::count(of_camera, command) > 0)
+        return "command " + std::to_string(command) + " works the camera, and moves nothing";
+    return "command " + std::to_string(command) + " is not flown";
+}
+
 /// Returns whether a command is a take-off or a landing of VTOLs.
 inline bool is_of_vtol(int command) { return command == nav_vtol_takeoff || command == nav_vtol_land; }
 

@@ -161,7 +161,7 @@ TEST(MissionFiles, ReportUnknownCommandsAndEndlessJumps) {
                                            "item 2: the jump to item 1 is not flown: it has no end",
                                            "item 7: the jump to item 40 is not flown: there is no such item"};
     EXPECT_EQ(plan.missing, missing);
-    EXPECT_EQ(plan.not_flown, (std::vector<std::string>{"item 5: command 2000 is not flown",
+    EXPECT_EQ(plan.not_flown, (std::vector<std::string>{"item 5: command 2000 works the camera, and moves nothing",
                                                         "item 3 and 1 more: command 4242 is not flown", missing[0],
                                                         missing[1], missing[2]}));
 }
