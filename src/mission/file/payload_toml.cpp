@@ -165,10 +165,12 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
     if (assumed.reason.empty())
         throw InputError(
             where, "the mechanical model does not know the effect of payload: its flights do not determine it",
-            mass_kg ? "fit flights that state their payload, of a wing those that determine its induced drag too; a "
-                      "rotorcraft needs a model that was not fitted with --model-kind fourier"
-                    : "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
-                      "wings, whose flights must determine the induced drag too, fit flights that state their payload");
+            !mass_kg ? "add takeoff_mass_kg (option --mass), the mass of the aircraft as its flights were flown; for "
+                       "wings, whose flights must determine the induced drag too, fit flights that state their payload"
+            : model.is_rotorcraft
+                ? "fit flights that state their payload, or fit without --model-kind fourier"
+                : "its mass does not help, as the flights of this wing do not show its induced drag: fit flights at "
+                  "several airspeeds, or that state their payload");
     mission.notes.push_back(fmt::format("payload_kg = {}: {}; its interval is wider", *payload_kg, assumed.reason));
     if (assumed.factor != 1.0) mission.payload = {*payload_kg, true, assumed.reason};
     scale_phases(assumed.factor, model);
