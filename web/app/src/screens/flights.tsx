@@ -295,10 +295,17 @@ function Packs({ state }: { state: State }) {
     aircraft,
   })));
   if (packs.length === 0) return null;
+  const unanswered = state.aircraft.filter((aircraft) => !aircraft.now).length;
   packs.sort((a, b) => worst_first.indexOf(a.pack.health) - worst_first.indexOf(b.pack.health));
   return (
     <>
       <h2 class="section">Packs, worst first</h2>
+      {unanswered > 0 && (
+        <p class="soft">
+          Without those of {unanswered === 1 ? "1 aircraft" : `${unanswered} aircraft`}: choose each under Answer, which
+          shows its packs.
+        </p>
+      )}
       <div class="packs">
         {packs.map((one) => (
           <PackCard pack={one.pack} aircraft={one.aircraft} />
@@ -341,6 +348,8 @@ export function FlightsScreen({ project, state }: { project: Project; state: Sta
     const found = packs.filter((pack) => pack.health === health).length;
     return found > 0 ? [`${found} ${words}`] : [];
   };
+  const answered = state.aircraft.filter((one) => one.now).length;
+  const of_some = answered < state.aircraft.length ? ` of ${answered} aircraft` : "";
   const verdicts = [...count("retire", "to retire"), ...count("watch", "to watch")].join(", ");
   return (
     <>
@@ -349,7 +358,7 @@ export function FlightsScreen({ project, state }: { project: Project; state: Sta
           <p class="over">{state.aircraft.length === 1 ? row?.aircraft.name : `${state.aircraft.length} aircraft`}</p>
           <h1>
             {rows.length === 1 ? "1 flight" : `${rows.length} flights`}
-            {packs.length > 0 ? `, ${packs.length === 1 ? "1 pack" : `${packs.length} packs`}` : ""}
+            {packs.length > 0 ? `, ${packs.length === 1 ? "1 pack" : `${packs.length} packs`}${of_some}` : ""}
             {verdicts && `: ${verdicts}`}
           </h1>
         </div>
