@@ -79,8 +79,18 @@ void add_to(po::options_description& description, const Option& option) {
     description.add_options()(declared_name(option).c_str(), semantic_of(option), option.description.c_str());
 }
 
+/// Which stages have what a pilot asks of a flight; empty for other options.
+std::string_view stages_with(std::string_view name) {
+    for (const auto* asked : {"--wind", "--payload", "--mass", "--airspeed", "--reserve"})
+        if (name == asked) return "answer, check and new-mission have it; a mission states it in its file";
+    if (name == "--capacity") return "answer and battery have it; a mission states capacity_ah in its file";
+    if (name == "--home-distance") return "answer and export have it";
+    return name == "--temperature" ? "answer has it" : "";
+}
+
 [[noreturn]] void refuse_unknown_option(const std::string& name, const std::string& reason,
                                         const std::vector<Option>& known) {
+    if (const auto where = stages_with(name); !where.empty()) throw UsageError(fmt::format("{}; {}", reason, where));
     std::vector<std::string> names(known.size());
     std::ranges::transform(known, names.begin(), [](const auto& option) { return "--" + option.name; });
     throw UsageError(fmt::format("{}; {}", reason, meant_or(name, names, "see --help")));

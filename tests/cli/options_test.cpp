@@ -156,7 +156,11 @@ TEST(Options, RefuseWhatDoesNotBelongTogether) {
     EXPECT_EQ(refusal({"--expert=-1"}), "the rule");
 }
 
-TEST(Options, RefuseUnknownOnes) { EXPECT_THAT(refusal({"--cuont", "3"}), HasSubstr("did you mean '--count'?")); }
+TEST(Options, RefuseUnknownOnes) {
+    EXPECT_THAT(refusal({"--cuont", "3"}), HasSubstr("did you mean '--count'?"));
+    EXPECT_THAT(refusal({"--wind", "6"}), HasSubstr("answer, check and new-mission have it; a mission states it"))
+        << "'--wide' was meant to be meant";
+}
 
 TEST(Options, ShowExpertsOnRequest) {
     const Declared declared;
