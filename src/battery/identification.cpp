@@ -13,6 +13,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -254,10 +255,26 @@ IdentificationResult identify_common(JointCircuitFit aligned, const Identificati
     return common;
 }
 
+/// Whether the load may have taken more voltage than the charge drawn, so that the flights show no capacity: their
+/// resistance may be 0, and at its upper end their mean current takes more than the curve falls.
+bool is_charge_hidden(const IdentificationResult& common) {
+    const auto& resistance_ohm = common.fitted.errors.resistance_ohm;
+    const auto& curve_v = common.identification.fit.open_circuit_v;
+    if (resistance_ohm.low > 0.0 || curve_v.empty()) return false;
+    double current_a = 0.0;
+    for (const auto& aligned : common.fitted.aligned.records) {
+        const auto& all_a = aligned.record->current_a;
+        const double sum_a = std::accumulate(all_a.begin(), all_a.end(), 0.0);
+        current_a = std::max(current_a, sum_a / static_cast<double>(all_a.size()));
+    }
+    return resistance_ohm.high * current_a > curve_v.front() - curve_v.back();
+}
+
 /// The capacity that the flights indicate without a given one; nullptr where they drew too little.
 std::shared_ptr<const FlightEstimate> flight_estimate(const IdentificationResult& common) {
     const auto& [identification, fitted, posterior, end] = common;
     const auto& fit = identification.fit;
+    if (is_charge_hidden(common)) return nullptr;
     const bool is_given = identification.capacity.origin == CapacityOrigin::given;
     auto estimate = std::make_shared<FlightEstimate>();
     for (const auto& aligned : fitted.aligned.records) estimate->flights.push_back(aligned.record->flight);

@@ -378,6 +378,16 @@ TEST(IdentificationStudy, RestsNoCapacityOnFlightsOfUnknownInitialCharge) {
     EXPECT_TRUE(interval.low < 5.7 && 5.7 < interval.high) << "what the pack is thought to hold";
 }
 
+// 29 s of hover on six cells: 0.03 Ah were said to indicate 0.04 to 0.98 Ah, and to contradict any label.
+TEST(Identification, RestsNoCapacityOnAVoltageThatTheLoadMayHaveTaken) {
+    FLIGHTWATT_NEEDS_SHARED();
+    const auto log = test::shared_dir() / "archives" / "autopilots" / "px4" / "copter_upgrade.ulg";
+    const std::vector records{test::discharge_record(flight::read_flight(log))};
+    const auto given = identify_battery(records, {5.0, {}, ""});
+    EXPECT_FALSE(given.battery.flight_estimate);
+    EXPECT_EQ(capacity_warning(given.battery), "");
+}
+
 TEST(Identification, ForetellsRealFlights) {
     FLIGHTWATT_NEEDS_SHARED();
     std::vector<DischargeRecord> records;
