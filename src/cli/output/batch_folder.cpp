@@ -108,6 +108,11 @@ void fit_measured(const StageCall& call, ModelKind kind, std::vector<mechanical:
     if (kind != ModelKind::fourier) add_best_power(measured, fit.options, fit.model);
 }
 
+bool is_there(const std::filesystem::path& folder) {
+    std::error_code none;
+    return std::filesystem::exists(folder, none);
+}
+
 const std::filesystem::path& made(const std::filesystem::path& folder) {
     make_directories(folder);
     return folder;
@@ -115,7 +120,10 @@ const std::filesystem::path& made(const std::filesystem::path& folder) {
 
 }  // namespace
 
-BatchFolder::BatchFolder(const std::filesystem::path& out) : lock_(made(out)), if_empty_{out} {}
+BatchFolder::BatchFolder(const std::filesystem::path& out) : BatchFolder(out, is_there(out)) {}
+
+BatchFolder::BatchFolder(const std::filesystem::path& out, bool was_there)
+    : lock_(made(out)), if_empty_{was_there ? std::filesystem::path() : out} {}
 
 void refuse_folder_of_logs(const StageCall& call, const std::string& out) {
     for (const auto& input : call.inputs) {

@@ -28,12 +28,14 @@ struct BatchArguments {
     bool note_changes = true;  ///< what is dropped from the folder, and what stays
 };
 
-/// The folder of a batch while a run changes it: made, locked, and removed at the end if it stayed empty.
+/// The folder of a batch while a run changes it: made, locked, and removed at the end if it was made and stayed empty.
 class BatchFolder {
   public:
     explicit BatchFolder(const std::filesystem::path& out);
 
   private:
+    BatchFolder(const std::filesystem::path& out, bool was_there);
+
     batch::FolderLock lock_;
     batch::RemoveIfEmpty if_empty_;
 };
