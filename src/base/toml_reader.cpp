@@ -79,7 +79,7 @@ std::string unit_in_name(std::string_view name) {
     return std::ranges::find(units, unit) == units.end() ? std::string() : unit;
 }
 
-/// "did you mean 'altitude_m'?", and that its values have another unit, where the names say so.
+/// "did you mean 'altitude_m'?", and that its values have another unit, where the names have them.
 std::string meant_text(std::string_view word, const std::string& near) {
     const auto unit = unit_in_name(word);
     const auto meant = unit_in_name(near);

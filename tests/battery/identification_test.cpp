@@ -378,7 +378,7 @@ TEST(IdentificationStudy, RestsNoCapacityOnFlightsOfUnknownInitialCharge) {
     EXPECT_TRUE(interval.low < 5.7 && 5.7 < interval.high) << "what the pack is thought to hold";
 }
 
-// 29 s of hover on six cells: 0.03 Ah were said to indicate 0.04 to 0.98 Ah, and to contradict any label.
+// 29 s of hover on six cells: 0.03 Ah indicated 0.04 to 0.98 Ah, which contradicted any label.
 TEST(Identification, RestsNoCapacityOnAVoltageThatTheLoadMayHaveTaken) {
     FLIGHTWATT_NEEDS_SHARED();
     const auto log = test::shared_dir() / "archives" / "autopilots" / "px4" / "copter_upgrade.ulg";

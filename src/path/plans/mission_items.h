@@ -28,7 +28,7 @@ inline bool is_movement(int command) {
            (command >= nav_waypoint && command <= last_for_navigation && command != region_of_interest);
 }
 
-/// Returns what is said of a command that is not flown, and of those of a camera, gimbal or shutter that nothing is lost.
+/// Returns that a command is not flown, and of those of a camera or its mount that nothing moves.
 inline std::string unflown_text(int command) {
     constexpr std::array of_camera{195, 196, 197, 200,  201,  202,  203,  204,  205, 206,
                                    530, 531, 532, 1000, 1001, 2000, 2001, 2500, 2501};
