@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <span>
 
 namespace flightwatt::flight {
@@ -66,6 +67,11 @@ std::size_t lift_off_of(std::span<const double> altitude_m, double clear_altitud
     return lifting;
 }
 
+/// Whether the altitude jumps before a point.
+bool jumps_at(const ResampledFlight& grid, std::size_t point) {
+    return std::ranges::binary_search(grid.pieces, point, {}, &IndexSpan::begin);
+}
+
 /// Where an aircraft whose motors stopped is at rest, within a span; its end if it falls until there.
 std::size_t end_of_fall(const ResampledFlight& grid, IndexSpan after) {
     constexpr auto half = steps(0.5 * level_s);
@@ -77,6 +83,34 @@ std::size_t end_of_fall(const ResampledFlight& grid, IndexSpan after) {
         if (fall_m <= max_rest_m) return i;
     }
     return after.end;
+}
+
+/// Whether the altitude changes by `moved_m` within some seconds: that of a receiver on the ground wanders more slowly.
+bool moves(std::span<const double> altitude_m, double moved_m) {
+    constexpr auto within = steps(20.0);
+    const auto ahead = std::min(within, altitude_m.size() - 1);
+    for (std::size_t i = 0; i + ahead < altitude_m.size(); ++i)
+        if (std::abs(altitude_m[i + ahead] - altitude_m[i]) >= moved_m) return true;
+    return false;
+}
+
+/// The spans in which the motors give much less than usual, but carry the aircraft: without the payload of
+/// another flight, or after it was dropped. They do not idle, and the altitude changes. Each has a usual effort of its
+/// own.
+std::vector<IndexSpan> lighter_flights(const ResampledFlight& grid, const std::vector<double>& effort, double lifting) {
+    constexpr double most = 0.98;
+    const double range_m = quantile_of(grid.altitude_m, most) - quantile_of(grid.altitude_m, 1.0 - most);
+    const double moved_m = std::max(drift_m, drift_fraction * range_m);
+    const auto is_lighter = [&](std::size_t i) { return effort[i] < lifting && effort[i] >= idle_fraction * lifting; };
+    std::vector<IndexSpan> lighter;
+    for (const auto& span : runs_of({0, grid.size()}, is_lighter, [&](std::size_t i) { return !jumps_at(grid, i); })) {
+        if (span.size() <= steps(min_hover_s) || !moves(part_of(grid.altitude_m, span), moved_m)) continue;
+        const auto efforts = part_of(effort, span);
+        const double own_lifting = lifting_fraction * usual_effort({efforts.begin(), efforts.end()});
+        std::ranges::copy(runs_of(span, [&](std::size_t i) { return effort[i] >= own_lifting; }),
+                          std::back_inserter(lighter));
+    }
+    return lighter;
 }
 
 /// Whether the log pauses within a span.
@@ -113,8 +147,11 @@ std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight
             return run.size() > steps(level_s) && (!is_stated || has_pause(grid, run, pause_s));
         });
     };
+    auto lifts = runs_of({0, grid.size()}, [&](std::size_t i) { return effort[i] >= lifting; });
+    std::ranges::move(lighter_flights(grid, effort, lifting), std::back_inserter(lifts));
+    std::ranges::sort(lifts, {}, &IndexSpan::begin);
     std::vector<IndexSpan> hovers;
-    for (const auto& run : runs_of({0, grid.size()}, [&](std::size_t i) { return effort[i] >= lifting; })) {
+    for (const auto& run : lifts) {
         if (!hovers.empty()) hovers.back().end = end_of_fall(grid, {hovers.back().end, run.begin});
         if (!hovers.empty() && (hovers.back().end == run.begin || !lands({hovers.back().end - 1, run.begin})))
             hovers.back().end = run.end;
@@ -131,8 +168,7 @@ std::vector<IndexSpan> rests_between(const std::vector<IndexSpan>& hovers, const
     for (const auto& hover : hovers) set_part(rests, hover, false);
     // A rest does not extend across a jump of the altitude.
     return runs_of(
-        {0, grid.size()}, [&](std::size_t i) { return rests[i]; },
-        [&](std::size_t i) { return !std::ranges::binary_search(grid.pieces, i, {}, &IndexSpan::begin); });
+        {0, grid.size()}, [&](std::size_t i) { return rests[i]; }, [&](std::size_t i) { return !jumps_at(grid, i); });
 }
 
 SortieEdges find_hover_edges(const ResampledFlight& grid, const Activity& activity, const Heights& heights) {

@@ -280,5 +280,69 @@ TEST(HoverRecord, APauseWithIdleMotorsOnBothSidesPartsFlightsWhateverTheArmingSt
     EXPECT_EQ(sorties_with(0.0, 4.0), 1U) << "armed throughout, as if it descended";
 }
 
+/// A copter that takes off at 20 s and lands at 200 s from 40 m, and again 100 s later; its motors give the throttle of
+/// `percent_at` in the air and 5 % on the ground.
+template <typename PercentAt>
+FlightPhases two_flights(const PercentAt& percent_at) {
+    FlightSeries series;
+    series.firmware = "rotorcraft";
+    Track throttle{.name = "throttle_percent", .source = "CTUN.ThO"};
+    Track altitude{.name = "altitude_m", .source = "BARO.Alt"};
+    for (double time_s = 0.0; time_s < 540.0; time_s += 0.5) {
+        const double own_s = std::fmod(time_s, 270.0);
+        const bool flies = own_s >= 20.0 && own_s < 200.0;
+        for (auto* track : {&throttle, &altitude}) track->time_s.push_back(time_s);
+        altitude.value.push_back(!flies ? 0.0 : std::min({4.0 * (own_s - 20.0), 40.0, 2.0 * (200.0 - own_s)}));
+        throttle.value.push_back(flies ? percent_at(time_s) + std::fmod(time_s, 1.0) : 5.0);
+    }
+    series.tracks = {altitude, throttle, state("armed", {15.0, 205.0, 285.0, 475.0}, {1.0, 0.0, 1.0, 0.0})};
+    return segment(select_tracks(series));
+}
+
+/// The flight without the payload was lost, or ended "in the air" after its climb.
+TEST(HoverRecord, AFlightWithoutThePayloadOfAnotherIsWhole) {
+    for (const double empty_percent : {48.0, 40.0, 34.0}) {
+        SCOPED_TRACE(empty_percent);
+        for (const bool is_first : {true, false}) {
+            const auto phases =
+                two_flights([&](double time_s) { return (time_s < 270.0) == is_first ? empty_percent : 72.0; });
+            ASSERT_EQ(phases.sorties.size(), 2U);
+            for (const auto& sortie : phases.sorties) {
+                ASSERT_EQ(sortie.phases.size(), 3U);
+                EXPECT_NEAR(sortie.end_s() - sortie.start_s(), 180.0, 2.0);
+                EXPECT_TRUE(sortie.phases.back().complete);
+            }
+        }
+    }
+}
+
+TEST(HoverRecord, AFlightThatDropsItsPayloadLandsOnTheGround) {
+    const auto phases = two_flights([](double time_s) { return std::fmod(time_s, 270.0) < 140.0 ? 72.0 : 38.0; });
+    ASSERT_EQ(phases.sorties.size(), 2U);
+    for (const auto& sortie : phases.sorties) {
+        EXPECT_NEAR(sortie.end_s() - sortie.start_s(), 180.0, 2.0);
+        EXPECT_TRUE(sortie.phases.back().complete);
+        EXPECT_NEAR(sortie.ground_altitude_m, 0.0, 0.1);
+    }
+}
+
+TEST(HoverRecord, MotorsThatIdleAtMuchThrottleDoNotFlyWhileTheAltitudeWanders) {
+    FlightSeries series;
+    series.firmware = "rotorcraft";
+    Track throttle{.name = "throttle_percent", .source = "CTUN.ThO"};
+    Track altitude{.name = "altitude_m", .source = "BARO.Alt"};
+    for (double time_s = 0.0; time_s < 400.0; time_s += 0.5) {
+        const bool flies = time_s >= 20.0 && time_s < 100.0;
+        for (auto* track : {&throttle, &altitude}) track->time_s.push_back(time_s);
+        altitude.value.push_back(flies ? std::min({2.0 * (time_s - 20.0), 20.0, 2.0 * (100.0 - time_s)})
+                                       : 0.02 * std::max(time_s - 100.0, 0.0));
+        throttle.value.push_back((flies ? 50.0 : 20.0) + std::fmod(time_s, 1.0));
+    }
+    series.tracks = {altitude, throttle, state("armed", {0.0}, {1.0})};
+    const auto phases = segment(select_tracks(series));
+    ASSERT_EQ(phases.sorties.size(), 1U);
+    EXPECT_NEAR(phases.sorties[0].end_s(), 100.0, 1.5);
+}
+
 }  // namespace
 }  // namespace flightwatt::flight
