@@ -41,7 +41,7 @@ std::string fingerprint_of(const flight::FlightFile& file, const LogFile& log, c
     const auto& load = options.load;
     const auto& segmentation = load.segmentation;
     Fingerprint fingerprint;
-    fingerprint.add(FLIGHTWATT_VERSION " record 18");
+    fingerprint.add(FLIGHTWATT_VERSION " record 19");
     fingerprint.add(log.path);
     if (!file.autopilot() && !file.is_series()) fingerprint.add(load.aircraft.value_or(""));  // may be of several
     fingerprint.add(log.why_not_fitted);

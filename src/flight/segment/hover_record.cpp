@@ -86,7 +86,7 @@ std::size_t end_of_fall(const ResampledFlight& grid, IndexSpan after) {
 }
 
 /// Whether the altitude changes by `moved_m` within some seconds: that of a receiver on the ground wanders more slowly.
-bool moves(std::span<const double> altitude_m, double moved_m) {
+bool altitude_moves(std::span<const double> altitude_m, double moved_m) {
     constexpr auto within = steps(20.0);
     const auto ahead = std::min(within, altitude_m.size() - 1);
     for (std::size_t i = 0; i + ahead < altitude_m.size(); ++i)
@@ -104,7 +104,7 @@ std::vector<IndexSpan> lighter_flights(const ResampledFlight& grid, const std::v
     const auto is_lighter = [&](std::size_t i) { return effort[i] < lifting && effort[i] >= idle_fraction * lifting; };
     std::vector<IndexSpan> lighter;
     for (const auto& span : runs_of({0, grid.size()}, is_lighter, [&](std::size_t i) { return !jumps_at(grid, i); })) {
-        if (span.size() <= steps(min_hover_s) || !moves(part_of(grid.altitude_m, span), moved_m)) continue;
+        if (span.size() <= steps(min_hover_s) || !altitude_moves(part_of(grid.altitude_m, span), moved_m)) continue;
         const auto efforts = part_of(effort, span);
         const double own_lifting = lifting_fraction * usual_effort({efforts.begin(), efforts.end()});
         std::ranges::copy(runs_of(span, [&](std::size_t i) { return effort[i] >= own_lifting; }),
