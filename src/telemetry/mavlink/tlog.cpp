@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "telemetry/binary/wire_value.h"
 #include "telemetry/mavlink/entries.h"
+#include "telemetry/mavlink/station_clock.h"
 #include "telemetry/mavlink/vehicles.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,17 +44,35 @@ void for_each_entry(std::string_view bytes, const OnEntry& on_entry, const OnSki
     if (damage > 0) on_skip(bytes.size() - damage, damage);
 }
 
+/// Whether a message states the autopilot's time since its boot.
+bool has_boot_time(const MavlinkFrame& frame) {
+    if (frame.message == nullptr) return false;
+    const auto& name = frame.message->layout.name;
+    return name == "SYSTEM_TIME" || name == "GLOBAL_POSITION_INT" || name == "ATTITUDE";
+}
+
+double boot_time_s(const MavlinkFrame& frame) { return frame.number("time_boot_ms") * units::milli; }
+
+/// The time of reception, from that of the first packet on.
+double received_s(const Entry& entry, std::uint64_t start_us) {
+    return static_cast<double>(static_cast<std::int64_t>(entry.time_us - start_us)) / us_per_s;
+}
+
 /// The component that flies each system. Without its heartbeat it is the first one that states a position or a battery.
 struct Census {
     std::map<int, Autopilot> autopilots;
     std::map<int, Autopilot> others;
-    std::set<int> px4 = {};  ///< systems
+    std::set<int> px4 = {};                                                ///< systems
+    std::map<std::pair<int, int>, std::vector<BootTime>> boot_times = {};  ///< by system and component
     std::uint64_t start_us = 0;
 
-    void add(const Entry& entry) {
+    void add(const Entry& entry, std::size_t offset) {
         const auto& frame = entry.frame;
         if (start_us == 0) start_us = entry.time_us;
         if (frame.message == nullptr) return;
+        if (has_boot_time(frame))
+            boot_times[{frame.system, frame.component}].push_back(
+                {offset, received_s(entry, start_us), boot_time_s(frame)});
         const auto& name = frame.message->layout.name;
         if (name == "HEARTBEAT" && is_autopilot(frame)) {
             add_autopilot(frame, autopilots);
@@ -74,7 +95,11 @@ class Vehicle {
           is_px4_(census.px4.contains(system)),
           start_us_(census.start_us),
           rows_(file, wanted) {
-        rows_.facts().information["start_unix_s"] = fmt::format("{:.6f}", static_cast<double>(start_us_) / us_per_s);
+        if (const auto times = census.boot_times.find({system, component}); times != census.boot_times.end())
+            clock_steps_ = find_clock_steps(times->second);
+        double start_s = static_cast<double>(start_us_) / us_per_s;
+        for (const auto& step : clock_steps_) start_s += step.step_s;  // a clock that was set is right
+        rows_.facts().information["start_unix_s"] = fmt::format("{:.6f}", start_s);
     }
 
     void add(const Entry& entry, std::size_t offset) {
@@ -83,8 +108,7 @@ class Vehicle {
         auto& layout = layout_of(frame);
         ++layout.count;
         if (frame.message == nullptr) return;
-        const auto ticks = static_cast<double>(static_cast<std::int64_t>(entry.time_us - start_us_));
-        const double time_s = ticks / us_per_s;
+        const double time_s = time_of(entry, offset);
         add_facts(frame, time_s);
         rows_.add(layout, time_s, offset, [&](std::size_t field) { return value_of(frame, field); });
     }
@@ -110,6 +134,22 @@ class Vehicle {
     }
 
   private:
+    /// The time of reception by the clock as it was at first.
+    double time_of(const Entry& entry, std::size_t offset) {
+        constexpr std::size_t max_notes = 10;
+        const double time_s = received_s(entry, start_us_);
+        for (; passed_ < clock_steps_.size() && clock_steps_[passed_].has_passed(offset, time_s); ++passed_) {
+            const auto& step = clock_steps_[passed_];
+            if (passed_ < max_notes)
+                rows_.facts().notes.push_back(fmt::format(
+                    "the clock of the computer that recorded is set {} by {:.1f} s at {:.1f} s, as the autopilot's "
+                    "shows: later times are corrected",
+                    step.step_s > 0.0 ? "forward" : "back", std::abs(step.step_s), step.before.received_s - ahead_s_));
+            ahead_s_ += step.step_s;
+        }
+        return time_s - ahead_s_;
+    }
+
     LoggedMessage& layout_of(const MavlinkFrame& frame) {
         const auto [found, is_new] = layouts_.try_emplace(frame.id);
         if (!is_new) return found->second;
@@ -127,8 +167,7 @@ class Vehicle {
         if (name == "PARAM_VALUE") add_parameter(frame);
         if (name == "STATUSTEXT") add_text(frame);
         if (name == "AUTOPILOT_VERSION") add_version(frame);
-        if (name == "SYSTEM_TIME" || name == "GLOBAL_POSITION_INT" || name == "ATTITUDE")
-            note_restart(frame.number("time_boot_ms") / 1e3, time_s);
+        if (has_boot_time(frame)) note_restart(boot_time_s(frame), time_s);
     }
 
     /// PX4 sends the bytes of a whole number in place of a float, others its value.
@@ -171,6 +210,9 @@ class Vehicle {
     RowCollector rows_;
     MavlinkSequence sequence_;
     std::map<std::uint32_t, LoggedMessage> layouts_;
+    std::vector<ClockStep> clock_steps_;
+    std::size_t passed_ = 0;  ///< steps
+    double ahead_s_ = 0.0;    ///< by these
     double boot_s_ = 0.0;
     double text_id_ = 0.0;
 };
@@ -208,7 +250,8 @@ std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesyste
                                     const std::vector<MessageRequest>& wanted) {
     Census census;
     for_each_entry(
-        bytes, [&](const Entry& entry, std::size_t) { census.add(entry); }, [](std::size_t, std::size_t) {});
+        bytes, [&](const Entry& entry, std::size_t offset) { census.add(entry, offset); },
+        [](std::size_t, std::size_t) {});
     auto vehicles = vehicles_of(census, file, wanted);
     if (census.start_us == 0) {
         throw InputError({file.string()}, "has MAVLink, but no times between 2001 and 2100",

@@ -4,6 +4,7 @@
 #include "helpers/rejected.h"
 
 #include <bit>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -121,6 +122,29 @@ TEST(Tlog, StatesLostMessagesAndARestartOfTheAutopilot) {
     const auto notes = read(log).front().facts.notes;
     EXPECT_THAT(notes, Contains(HasSubstr("the autopilot restarted at 50.0 s")));
     EXPECT_THAT(notes, Contains(HasSubstr("24.0 % of the messages of system 1 were lost on the link")));
+}
+
+/// The clock of a laptop or a computer on board is set while it records: a flight was an hour longer, or in two parts, and
+/// a recording that begins years ago was refused.
+TEST(Tlog, TimesContinueWhereTheClockOfTheStationIsSet) {
+    for (const double step_s : {40.0, -40.0, 1e8}) {
+        SCOPED_TRACE(step_s);
+        test::MavlinkSender vehicle;
+        std::string log = test::tlog_entry(0, vehicle.heartbeat());
+        for (int i = 0; i < 100; ++i) {
+            const double time_s = i < 50 ? i : i + step_s;
+            log += test::tlog_entry(time_s, vehicle.position(100 + i, 3.0)) +
+                   test::tlog_entry(time_s + 0.1, vehicle.status(15'800, 0));
+        }
+        const auto logs = read(log);
+        const auto& time_s = logs.front().log.senders.front().table("SYS_STATUS")->time_s;
+        ASSERT_EQ(time_s.size(), 100U);
+        for (std::size_t i = 0; i < time_s.size(); ++i) EXPECT_NEAR(time_s[i], static_cast<double>(i) + 0.1, 1e-4);
+        const auto& facts = logs.front().facts;
+        EXPECT_THAT(facts.notes, Contains(HasSubstr("the clock of the computer that recorded is set")));
+        EXPECT_NEAR(std::stod(facts.information.at("start_unix_s")), 1'780'000'000.0 + step_s, 1e-3)
+            << "a clock that was set is right";
+    }
 }
 
 TEST(Tlog, ReadsParametersAndTextsInParts) {
