@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,9 @@ std::vector<FamilySource> cell_voltages() {
 
 double sum_of_cells(const std::vector<double>& cells_v) {
     double sum_v = 0.0;
-    for (std::size_t i = 0; i < cells + further_cells; ++i) sum_v += std::isnan(cells_v[i]) ? 0.0 : cells_v[i];
+    for (std::size_t i = 0; i < cells + further_cells; ++i)
+        if (cells_v[i] < unknown_16_bit * units::milli)
+            sum_v += cells_v[i];  // some state so that there is no further one
     return sum_v > 0.0 ? sum_v : no_value;
 }
 
@@ -135,6 +138,16 @@ double of_heartbeat(const telemetry::AutopilotLog& log, const char* field) {
     return column == nullptr || column->values.empty() ? no_value : column->values.front();
 }
 
+/// Whether heartbeats state hardware in the loop: an autopilot that flies in a simulator.
+bool has_simulated_sensors(const telemetry::AutopilotLog& log) {
+    constexpr unsigned hardware_in_the_loop = 32;
+    const auto* heartbeat = log.log.senders.front().table("HEARTBEAT");
+    const auto* modes = heartbeat == nullptr ? nullptr : heartbeat->column("base_mode");
+    return modes != nullptr && std::ranges::any_of(modes->values, [](double mode) {
+               return mode >= 0.0 && (static_cast<unsigned>(mode) & hardware_in_the_loop) != 0;
+           });
+}
+
 /// ArduPilot's name of its vehicle, by MAVLink's number of the type.
 std::string ardupilot_name(double type) {
     constexpr double first_vtol = 19.0;
@@ -159,7 +172,10 @@ void describe_mavlink(const telemetry::AutopilotLog& log, FlightSeries& series) 
     if (series.aircraft_id.empty()) series.aircraft_id = log.log.senders.front().id;
     series.aircraft_name = autopilot == ardupilot ? ardupilot_name(type) : autopilot == px4 ? "PX4" : "MAVLink";
     const auto is_simulation = [](const auto& of) { return of.name == "SIMSTATE"; };
-    if (std::ranges::any_of(log.messages, is_simulation)) series.aircraft_name += " SITL";
+    if (std::ranges::any_of(log.messages, is_simulation))
+        series.aircraft_name += " SITL";
+    else if (has_simulated_sensors(log))
+        series.aircraft_name += " HITL";
     series.firmware = firmware_of_type(type);
     if (const auto start = facts.information.find("start_unix_s"); start != facts.information.end())
         series.start_clock_s = parse_number(start->second);
@@ -280,6 +296,30 @@ bool outlasts(const telemetry::MessageTable& status, const telemetry::MessageTab
     return status.time_s.back() > battery.time_s.back() + ended_s;
 }
 
+/// A time in which the battery's own message is silent, and the status is not.
+struct Silence {
+    double from_s;
+    double duration_s;
+};
+
+/// The first silence, from the first status on or between two of the battery's messages; std::nullopt without one.
+std::optional<Silence> find_silence(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
+    constexpr double late_s = 10.0;
+    constexpr double pause_s = 30.0;
+    constexpr double dense_s = 5.0;
+    const double first_s = status.time_s.front();
+    if (battery.time_s.front() > first_s + late_s) return Silence{first_s, battery.time_s.front() - first_s};
+    for (std::size_t i = 1; i < battery.time_s.size(); ++i) {
+        const Silence silence{battery.time_s[i - 1], battery.time_s[i] - battery.time_s[i - 1]};
+        if (silence.duration_s <= pause_s) continue;
+        const auto rows = std::ranges::count_if(status.time_s, [&](double time_s) {
+            return time_s > silence.from_s && time_s < silence.from_s + silence.duration_s;
+        });
+        if (dense_s * static_cast<double>(rows) >= silence.duration_s) return silence;
+    }
+    return std::nullopt;
+}
+
 /// Whether the battery's own message is too rare for the power of a phase, and the status is not.
 bool is_denser(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
     constexpr double rare_s = 5.0;
@@ -326,6 +366,7 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     const bool is_replaced = has_battery && status != tables.end() && has_its_power(*status, *battery);
     const bool is_rare = is_replaced && is_denser(*status, *battery);
     const bool has_ended = is_replaced && !is_rare && outlasts(*status, *battery);
+    const auto silence = is_replaced && !is_rare && !has_ended ? find_silence(*status, *battery) : std::nullopt;
     if (has_ended)
         log.facts.notes.push_back(fmt::format("BATTERY_STATUS ends {:.0f} s before SYS_STATUS, which is used",
                                               status->time_s.back() - battery->time_s.back()));
@@ -333,11 +374,15 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
         log.facts.notes.push_back(fmt::format("BATTERY_STATUS came {} time{} in {:.0f} s: the power is by SYS_STATUS",
                                               battery->time_s.size(), battery->time_s.size() == 1 ? "" : "s",
                                               status->time_s.back() - status->time_s.front()));
-        leave_temperature(*battery);
     }
+    if (silence)
+        log.facts.notes.push_back(
+            fmt::format("BATTERY_STATUS is silent for {:.0f} s from {:.0f} s on: the power is by SYS_STATUS",
+                        silence->duration_s, silence->from_s));
+    if (is_rare || silence) leave_temperature(*battery);
     std::erase_if(tables, [&](const telemetry::MessageTable& table) {
         const bool is_unused =
-            has_battery && !is_rare && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS");
+            has_battery && !is_rare && !silence && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS");
         return table.empty() || is_unused || (has_second && table.message == "BATTERY2");
     });
     return log;

@@ -226,6 +226,60 @@ TEST(MavlinkFamily, TakesTheStatusWhereTheBatterysMessageIsRare) {
     }
 }
 
+/// Half of a flight was "missing", or interpolated, that the status has.
+TEST(MavlinkFamily, TakesTheStatusWhereTheBatterysMessageBeginsLateOrPauses) {
+    const auto power_of = [](int silent_from_s, int silent_until_s, const char* note) {
+        test::MavlinkSender vehicle;
+        const auto series = series_of(vehicle, [&](int i) {
+            std::vector packets{vehicle.status(16'000, rising_ca(i))};
+            if (i < silent_from_s || i >= silent_until_s)
+                packets.push_back(vehicle.battery({15'000}, rising_ca(i), 10 * i, 0, 2'500));
+            return packets;
+        });
+        EXPECT_EQ(std::ranges::any_of(series.notes, [&](const auto& of) { return of.find(note) != of.npos; }),
+                  silent_until_s - silent_from_s > 8);
+        return select_tracks(series);
+    };
+    for (const auto& data :
+         {power_of(0, 60, "silent for 60 s from 0 s on"), power_of(40, 80, "silent for 41 s from 39")}) {
+        EXPECT_EQ(data.power_w.source, "SYS_STATUS.voltage_battery * SYS_STATUS.current_battery");
+        EXPECT_EQ(data.power_w.time_s.size(), 120U);
+        EXPECT_EQ(data.battery_temperature_c.value.front(), 25.0);
+        EXPECT_TRUE(data.charge_ah.empty());
+    }
+    EXPECT_EQ(value_at(power_of(0, 8, "silent").voltage_v, 40.0), 15.0) << "from before the flight on";
+}
+
+TEST(MavlinkFamily, FurtherCellsThatAreUnknownAreNone) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int i) {
+        // time_remaining, charge_state, voltages_ext, mode and fault_bitmask
+        auto payload = test::little_endian(std::int32_t{i}) + test::little_endian(std::int32_t{-1}) +
+                       test::little_endian(std::int16_t{32767});
+        for (int cell = 0; cell < 10; ++cell)
+            payload += test::little_endian(static_cast<std::uint16_t>(cell < 4 ? 4'000 : 65'535));
+        payload += test::little_endian(rising_ca(i)) + std::string{'\0', '\1', '\1', '\62'} + std::string(5, '\0') +
+                   std::string(8, '\xFF') + std::string(5, '\1');
+        return std::vector{vehicle.packet(147, payload)};
+    });
+    EXPECT_EQ(select_tracks(series).voltage_v.value.front(), 16.0);
+}
+
+/// A flight in a simulator was used as a real one.
+TEST(MavlinkFamily, HardwareInTheLoopIsASimulation) {
+    test::MavlinkSender vehicle;
+    const auto name_with = [&](std::uint8_t base_mode) {
+        return series_of(
+                   vehicle,
+                   [&](int i) {
+                       return std::vector{vehicle.heartbeat(2, 12, base_mode), vehicle.status(16'000, rising_ca(i))};
+                   })
+            .aircraft_name;
+    };
+    EXPECT_EQ(name_with(209), "ArduCopter") << "by the first heartbeat";
+    EXPECT_EQ(name_with(209 | 32), "ArduCopter HITL");
+}
+
 TEST(MavlinkFamily, CompletesThePackOfMoreThanTenCells) {
     const auto voltage_v = [](std::size_t cells, std::uint16_t status_mv, std::size_t notes) {
         test::MavlinkSender vehicle;
