@@ -144,6 +144,14 @@ telemetry::TelemetryLog read_message_of(const flight::FlightFile& file, const st
     return read_message(file, std::move(configuration), {message, fields});
 }
 
+/// The sender that --aircraft names: the only one of an autopilot's log by any name, of several in a .tlog that with the
+/// number, which may follow a name ("ArduCopter 2").
+std::optional<std::string> named_sender(const flight::FlightFile& file, const telemetry::TelemetryLog& log,
+                                        const std::optional<std::string>& aircraft) {
+    if (!aircraft || !file.autopilot()) return aircraft;
+    return log.senders.size() < 2 ? std::nullopt : std::optional(aircraft->substr(aircraft->rfind(' ') + 1));
+}
+
 }  // namespace
 
 MessageCsv message_table(const flight::FlightFile& file, const std::string& message,
@@ -157,7 +165,8 @@ MessageCsv message_table(const flight::FlightFile& file, const std::string& mess
         throw InputError({file.path().string()},
                          fmt::format("has no recording {}: there are {}", recording, recordings.size()));
     }
-    auto table = as_csv(table_of(recordings[recording - 1], file, message, file.autopilot() ? std::nullopt : sender));
+    const auto& log = recordings[recording - 1];
+    auto table = as_csv(table_of(log, file, message, named_sender(file, log, sender)));
     table.recordings = recordings.size();
     return table;
 }

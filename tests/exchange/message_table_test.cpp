@@ -3,6 +3,8 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "helpers/mavlink_packets.h"
+#include "helpers/rejected.h"
 #include "helpers/sample_logs.h"
 #include "helpers/selected_tracks.h"
 
@@ -68,6 +70,28 @@ TEST(MessageTable, AsksWhichOfSeveralSenders) {
     EXPECT_EQ(message_table(flight::FlightFile(log), "ENERGY", "8").csv,
               "time_s,throttle_percent,voltage_v,current_a,power_w,charge_ah,energy_wh\n"
               "1.1,50,11.7,3.1,36.6,0.03,0.31\n");
+}
+
+/// --aircraft, which the error asks for, was not used.
+TEST(MessageTable, OfSeveralVehiclesHasTheOneThatIsNamed) {
+    using testing::AllOf;
+    using testing::HasSubstr;
+    using testing::Not;
+    test::MavlinkSender first{1, 1};
+    test::MavlinkSender second{42, 1};
+    std::string log;
+    for (int i = 0; i < 20; ++i)
+        for (auto* vehicle : {&first, &second})
+            log += test::tlog_entry(i, vehicle->heartbeat()) +
+                   test::tlog_entry(i, vehicle->status(vehicle == &first ? 15'800 : 11'100, 100));
+    const auto file = test::write_text(test::scratch_dir() / "two.tlog", log);
+    const auto csv_of = [&](const char* name) {
+        return message_table(flight::FlightFile(file), "SYS_STATUS", name).csv;
+    };
+    EXPECT_THAT(rejection_of(file, "SYS_STATUS"), HasSubstr("choose one with --aircraft"));
+    EXPECT_THAT(csv_of("1"), AllOf(HasSubstr("15800"), Not(HasSubstr("11100"))));
+    EXPECT_THAT(csv_of("ArduCopter 42"), AllOf(HasSubstr("11100"), Not(HasSubstr("15800"))));
+    EXPECT_THAT(rejection_of(file, "SYS_STATUS", "3"), HasSubstr("it was sent by 1, 42"));
 }
 
 TEST(MessageTable, IsNotMadeOfASeries) {
