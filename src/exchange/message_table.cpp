@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -118,6 +117,26 @@ MessageCsv as_csv(const telemetry::MessageTable& table) {
     return result;
 }
 
+/// Adds the rows of a sender to those of the same id, of an aircraft that flew before, or as another sender.
+void add_sender(telemetry::SenderLog sender, std::vector<telemetry::SenderLog>& senders) {
+    const auto known = std::ranges::find(senders, sender.id, &telemetry::SenderLog::id);
+    if (known == senders.end()) return senders.push_back(std::move(sender));
+    for (auto& table : sender.tables) {
+        const auto same = std::ranges::find(known->tables, table.message, &telemetry::MessageTable::message);
+        if (same == known->tables.end()) {
+            known->tables.push_back(std::move(table));
+            continue;
+        }
+        const auto append = [](auto& values, const auto& more) {
+            values.insert(values.end(), more.begin(), more.end());
+        };
+        append(same->time_s, table.time_s);
+        append(same->places, table.places);
+        for (std::size_t i = 0; i < std::min(same->columns.size(), table.columns.size()); ++i)
+            append(same->columns[i].values, table.columns[i].values);
+    }
+}
+
 /// The log of another autopilot with that message of each aircraft, and the times of all others, which show the
 /// recordings.
 telemetry::TelemetryLog read_autopilot_message(const flight::FlightFile& file, const std::string& message) {
@@ -131,7 +150,7 @@ telemetry::TelemetryLog read_autopilot_message(const flight::FlightFile& file, c
                 wanted.push_back({name, name == message ? std::move(fields) : std::vector<std::string>()});
     auto logs = read(wanted);
     for (std::size_t i = 1; i < logs.size(); ++i)
-        std::ranges::move(logs[i].log.senders, std::back_inserter(logs.front().log.senders));
+        for (auto& sender : logs[i].log.senders) add_sender(std::move(sender), logs.front().log.senders);
     return std::move(logs.front().log);
 }
 

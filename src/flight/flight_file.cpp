@@ -104,21 +104,24 @@ const LogFamily& family_of(telemetry::AutopilotFormat format) {
     }
 }
 
-/// The recordings of each aircraft in a log; several of a ground station's log are candidates of the same recording.
+/// The recordings of each aircraft in a log; several of a ground station's log are candidates of the same recording, and
+/// those that follow each other with one number are recordings.
 std::vector<Candidates> read_autopilot(const FlightFile& file) {
     const auto format = file.autopilot().value();
     const auto& family = family_of(format);
     auto logs = read_autopilot_logs(file.text(), format, file.path(), family_messages(family));
     std::vector<Candidates> recordings;
+    std::map<std::string, std::size_t> numbers;  // of recordings, by system
+    for (const auto& read : logs) numbers[read.log.senders.front().id] = 0;
     for (auto& read : logs) {
         const auto system = read.log.senders.front().id;
-        std::size_t number = 0;
+        auto& number = numbers[system];
         for (auto& log : recordings_of(std::move(read.log))) {
             if (recordings.size() == number) recordings.emplace_back();
             telemetry::AutopilotLog part{std::move(log), read.facts, read.messages};
             auto series = format == telemetry::AutopilotFormat::tlog ? mavlink_series(std::move(part))
                                                                      : family_series(std::move(part), family);
-            if (logs.size() > 1) series.aircraft_name += " " + system;
+            if (numbers.size() > 1) series.aircraft_name += " " + system;
             recordings[number++].push_back(std::move(series));
         }
     }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 
 namespace flightwatt::telemetry {
 namespace {
@@ -61,6 +63,27 @@ std::vector<ClockStep> find_clock_steps(const std::vector<BootTime>& times) {
             steps.push_back({before.last, behind.first, step_s});
     }
     return steps;
+}
+
+std::vector<std::size_t> find_other_vehicles(const std::vector<VehicleChange>& changes,
+                                             const std::vector<BootTime>& times) {
+    constexpr std::size_t max_changes = 20;
+    std::map<std::size_t, std::size_t> places;  // by that of the clock's change
+    if (changes.size() > max_changes) return {};
+    for (const auto& change : changes) {
+        const auto from = std::ranges::upper_bound(times, change.before, {}, &BootTime::place);
+        const auto to = std::ranges::lower_bound(times, change.behind, {}, &BootTime::place);
+        if (from == times.begin() || to == times.end()) continue;
+        for (auto time = to; time >= from; --time) {
+            if (std::abs(lag_s(*time) - lag_s(*std::prev(time))) < min_step_s) continue;
+            const auto [place, is_new] = places.try_emplace(time->place, time->place);
+            place->second = std::min(place->second, change.behind);
+            break;
+        }
+    }
+    std::vector<std::size_t> rising;
+    for (const auto& [changed, place] : places) rising.push_back(place);
+    return rising;
 }
 
 }  // namespace flightwatt::telemetry

@@ -27,4 +27,16 @@ struct ClockStep {
 /// back, late ones, and those of two vehicles or links in turn are no steps.
 std::vector<ClockStep> find_clock_steps(const std::vector<BootTime>& times);
 
+/// Two messages of one number of a system that state different vehicles: other kinds, or other boards.
+struct VehicleChange {
+    std::size_t before = 0;  ///< the place of the former
+    std::size_t behind = 0;
+};
+
+/// Finds the places at which a recording continues with another vehicle, rising: of the changes those in which the
+/// autopilot's clock changes too, as that of a VTOL that states its flight as a kind does not. None if there are so many
+/// that two vehicles are recorded at once.
+std::vector<std::size_t> find_other_vehicles(const std::vector<VehicleChange>& changes,
+                                             const std::vector<BootTime>& times);
+
 }  // namespace flightwatt::telemetry

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -58,12 +59,18 @@ double received_s(const Entry& entry, std::uint64_t start_us) {
     return static_cast<double>(static_cast<std::int64_t>(entry.time_us - start_us)) / us_per_s;
 }
 
+/// The number of the board; 0 is unknown.
+std::uint64_t uid_of(const MavlinkFrame& version) {
+    return wire_number<std::uint64_t>(version.payload.data() + sizeof(std::uint64_t));
+}
+
 /// The component that flies each system. Without its heartbeat it is the first one that states a position or a battery.
 struct Census {
     std::map<int, Autopilot> autopilots;
     std::map<int, Autopilot> others;
-    std::set<int> px4 = {};                                                ///< systems
-    std::map<std::pair<int, int>, std::vector<BootTime>> boot_times = {};  ///< by system and component
+    std::set<int> px4 = {};                                                  ///< systems
+    std::map<std::pair<int, int>, std::vector<BootTime>> boot_times = {};    ///< by system and component
+    std::map<std::pair<int, int>, std::vector<VehicleChange>> changes = {};  ///< likewise
     std::uint64_t start_us = 0;
 
     void add(const Entry& entry, std::size_t offset) {
@@ -77,21 +84,47 @@ struct Census {
         if (name == "HEARTBEAT" && is_autopilot(frame)) {
             add_autopilot(frame, autopilots);
             if (frame.number("autopilot") == autopilot_px4) px4.insert(frame.system);
+            note_vehicle(frame, static_cast<std::uint64_t>(frame.number("type")), offset);
+        } else if (name == "AUTOPILOT_VERSION") {
+            note_vehicle(frame, uid_of(frame), offset);
         } else if (name == "SYS_STATUS" || name == "GLOBAL_POSITION_INT") {
             others.try_emplace(frame.system, Autopilot{frame.component});
         }
     }
 
+  private:
     static constexpr double autopilot_px4 = 12.0;
+
+    /// The number of a vehicle's kind or board; 0 is unknown.
+    void note_vehicle(const MavlinkFrame& frame, std::uint64_t number, std::size_t offset) {
+        if (number == 0) return;
+        const std::pair sender{static_cast<int>(frame.system), static_cast<int>(frame.component)};
+        const auto [known, is_first] = stated_.try_emplace({sender, frame.id}, number, offset);
+        auto& [last, place] = known->second;
+        if (last != number) changes[sender].push_back({place, offset});
+        last = number;
+        place = offset;
+    }
+
+    /// By sender and message: the number, and its latest place.
+    std::map<std::pair<std::pair<int, int>, std::uint32_t>, std::pair<std::uint64_t, std::size_t>> stated_ = {};
+};
+
+/// Places of a recording, [begin, end).
+struct Places {
+    std::size_t begin;
+    std::size_t end;
+    bool has(std::size_t place) const { return place >= begin && place < end; }
 };
 
 /// Collects the messages of one vehicle.
 class Vehicle {
   public:
-    Vehicle(int system, int component, const Census& census, const std::filesystem::path& file,
+    Vehicle(int system, int component, Places places, const Census& census, const std::filesystem::path& file,
             const std::vector<MessageRequest>& wanted)
         : system_(system),
           component_(component),
+          places_(places),
           is_px4_(census.px4.contains(system)),
           start_us_(census.start_us),
           rows_(file, wanted) {
@@ -104,7 +137,8 @@ class Vehicle {
 
     void add(const Entry& entry, std::size_t offset) {
         const auto& frame = entry.frame;
-        if (frame.system != system_ || !is_of_vehicle(frame, component_) || !sequence_.add(frame)) return;
+        if (frame.system != system_ || !places_.has(offset)) return;
+        if (!is_of_vehicle(frame, component_) || !sequence_.add(frame)) return;
         auto& layout = layout_of(frame);
         ++layout.count;
         if (frame.message == nullptr) return;
@@ -113,7 +147,9 @@ class Vehicle {
         rows_.add(layout, time_s, offset, [&](std::size_t field) { return value_of(frame, field); });
     }
 
-    void skip(std::size_t offset, std::size_t bytes) { rows_.skip(offset, bytes); }
+    void skip(std::size_t offset, std::size_t bytes) {
+        if (places_.has(offset)) rows_.skip(offset, bytes);
+    }
 
     AutopilotLog take() {
         for (const auto& [id, layout] : layouts_) rows_.list(layout);
@@ -192,7 +228,7 @@ class Vehicle {
     }
 
     void add_version(const MavlinkFrame& frame) {
-        const auto uid = wire_number<std::uint64_t>(frame.payload.data() + sizeof(std::uint64_t));
+        const auto uid = uid_of(frame);
         if (uid != 0) rows_.facts().information["uid"] = fmt::format("{:016X}", uid);
     }
 
@@ -205,6 +241,7 @@ class Vehicle {
 
     int system_;
     int component_;
+    Places places_;
     bool is_px4_;
     std::uint64_t start_us_;
     RowCollector rows_;
@@ -217,12 +254,24 @@ class Vehicle {
     double text_id_ = 0.0;
 };
 
-/// The vehicles of a log; those without a heartbeat only if no system has one.
+/// The vehicles of a log; those without a heartbeat only if no system has one. Of one system several may follow each
+/// other.
 std::vector<Vehicle> vehicles_of(const Census& census, const std::filesystem::path& file,
                                  const std::vector<MessageRequest>& wanted) {
     std::vector<Vehicle> vehicles;
-    for (const auto& [system, autopilot] : census.autopilots.empty() ? census.others : census.autopilots)
-        vehicles.emplace_back(system, autopilot.component, census, file, wanted);
+    for (const auto& [system, autopilot] : census.autopilots.empty() ? census.others : census.autopilots) {
+        std::size_t begin = 0;
+        const auto add_until = [&, system = system, component = autopilot.component](std::size_t end) {
+            vehicles.emplace_back(system, component, Places{begin, end}, census, file, wanted);
+            begin = end;
+        };
+        const std::pair sender{system, autopilot.component};
+        const auto changes = census.changes.find(sender);
+        const auto times = census.boot_times.find(sender);
+        if (changes != census.changes.end() && times != census.boot_times.end())
+            std::ranges::for_each(find_other_vehicles(changes->second, times->second), add_until);
+        add_until(std::numeric_limits<std::size_t>::max());
+    }
     return vehicles;
 }
 

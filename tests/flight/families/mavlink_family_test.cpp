@@ -295,6 +295,23 @@ TEST(MavlinkFamily, CompletesThePackOfMoreThanTenCells) {
     EXPECT_NEAR(voltage_v(6, 28'000, 0), 24.0, 1e-9) << "all of its cells";
 }
 
+TEST(MavlinkFamily, VehiclesOfOneNumberThatAreFlownInTurnAreRecordings) {
+    std::string log;
+    test::MavlinkSender vehicle;
+    for (const int begin : {0, 300})
+        for (int i = begin; i < begin + 100; ++i) {
+            log += test::tlog_entry(i, vehicle.heartbeat(begin == 0 ? 2 : 1)) +
+                   test::tlog_entry(i, vehicle.position(i - begin + 50, 3.0)) +
+                   test::tlog_entry(i, vehicle.status(begin == 0 ? 16'000 : 12'000, rising_ca(i)));
+        }
+    const auto recordings = read_recordings(FlightFile(written(log)), std::nullopt, false);
+    ASSERT_EQ(recordings.size(), 2U);
+    EXPECT_EQ(recordings[0].front().aircraft_name, "ArduCopter");
+    EXPECT_EQ(recordings[1].front().aircraft_name, "ArduPlane");
+    EXPECT_EQ(recordings[1].front().flight, "flight@2");
+    EXPECT_EQ(value_at(select_tracks(recordings[1].front()).voltage_v, 350.0), 12.0);
+}
+
 TEST(MavlinkFamily, AsksWhichOfTwoVehiclesThatFlew) {
     const auto log = test::tlog_of_flight({1, 1}) + test::tlog_of_flight({2, 1});
     EXPECT_THAT(test::rejected([&] { load_flight(written(log)); }), HasSubstr("--aircraft"));

@@ -71,5 +71,18 @@ TEST(StationClock, ARecordingThatIsAppendedIsNoStep) {
     EXPECT_TRUE(find_clock_steps(times).empty());
 }
 
+TEST(StationClock, AnotherVehicleIsRecordedWhereKindAndBootClockChange) {
+    auto times = steady();
+    for (auto& time : times)
+        if (time.place >= 2500) time.boot_s += 500.0;
+    EXPECT_EQ(find_other_vehicles({{2400, 2520}}, times), std::vector<std::size_t>{2500});
+    EXPECT_EQ(find_other_vehicles({{2400, 2495}}, times), std::vector<std::size_t>{2495}) << "its first heartbeat";
+    EXPECT_EQ(find_other_vehicles({{2400, 2495}, {100, 2600}}, times), std::vector<std::size_t>{2495}) << "once";
+    EXPECT_TRUE(find_other_vehicles({{1000, 1020}, {2000, 2020}}, times).empty()) << "a VTOL that states its flight";
+    EXPECT_TRUE(find_other_vehicles({{2400, 6000}}, times).empty());
+    EXPECT_TRUE(find_other_vehicles({{2400, 2520}}, {}).empty());
+    EXPECT_TRUE(find_other_vehicles(std::vector<VehicleChange>(30, {2400, 2520}), times).empty()) << "both at once";
+}
+
 }  // namespace
 }  // namespace flightwatt::telemetry

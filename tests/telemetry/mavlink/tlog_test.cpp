@@ -147,6 +147,28 @@ TEST(Tlog, TimesContinueWhereTheClockOfTheStationIsSet) {
     }
 }
 
+/// A copter and then a wing, both with the number 1, were one aircraft with the power of both.
+TEST(Tlog, VehiclesOfOneNumberThatAreFlownInTurnAreApart) {
+    test::MavlinkSender copter;
+    test::MavlinkSender wing;
+    std::string log;
+    for (int i = 0; i < 60; ++i)
+        log += test::tlog_entry(i, copter.heartbeat(2)) + test::tlog_entry(i, copter.position(500 + i, 3.0)) +
+               test::tlog_entry(i, copter.status(15'800, 0));
+    for (int i = 200; i < 260; ++i)
+        log += test::tlog_entry(i, wing.heartbeat(1)) + test::tlog_entry(i, wing.position(i - 190, 3.0)) +
+               test::tlog_entry(i, wing.status(11'100, 0));
+    const auto logs = read(log);
+    ASSERT_EQ(logs.size(), 2U);
+    for (const auto& [vehicle, voltage_mv] : {std::pair(0, 15'800.0), {1, 11'100.0}}) {
+        const auto& sender = logs[static_cast<std::size_t>(vehicle)].log.senders.front();
+        EXPECT_EQ(sender.id, "1");
+        EXPECT_EQ(sender.table("SYS_STATUS")->time_s.size(), 60U);
+        EXPECT_THAT(sender.table("SYS_STATUS")->column("voltage_battery")->values, testing::Each(voltage_mv));
+    }
+    EXPECT_EQ(logs.back().log.senders.front().table("SYS_STATUS")->time_s.front(), 200.0);
+}
+
 TEST(Tlog, ReadsParametersAndTextsInParts) {
     test::MavlinkSender vehicle;
     const auto part = [&](char number, const std::string& text) {
