@@ -329,6 +329,13 @@ bool is_denser(const telemetry::MessageTable& status, const telemetry::MessageTa
            status.time_s.size() > denser * rows;
 }
 
+/// Leaves the counters and the temperature of the only battery, whose voltage and current the status has.
+void leave_counters(telemetry::MessageTable& battery) {
+    std::erase_if(battery.columns, [](const telemetry::Column& column) {
+        return column.field != "temperature" && !column.field.ends_with("_consumed");
+    });
+}
+
 /// Leaves the only battery's temperature; its counters are as rare as its power.
 void leave_temperature(telemetry::MessageTable& battery) {
     std::erase_if(battery.columns, [](const telemetry::Column& column) { return column.field != "temperature"; });
@@ -363,6 +370,8 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     if (has_battery && status != tables.end()) complete_cells(*battery, *status, log.facts.notes);
     const auto* id = battery == tables.end() ? nullptr : battery->column("id");
     const bool has_second = id != nullptr && std::ranges::find(id->values, 1.0) != id->values.end();
+    if (battery != tables.end() && !has_battery && status != tables.end() && has_its_power(*status, *battery))
+        leave_counters(*battery);
     const bool is_replaced = has_battery && status != tables.end() && has_its_power(*status, *battery);
     const bool is_rare = is_replaced && is_denser(*status, *battery);
     const bool has_ended = is_replaced && !is_rare && outlasts(*status, *battery);

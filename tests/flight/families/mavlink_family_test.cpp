@@ -94,6 +94,19 @@ TEST(MavlinkFamily, TakesTheStatusWhereTheBatteryHasNoCurrent) {
     EXPECT_NEAR(select_tracks(series).power_w.value.front(), 99.0, 1e-9);
 }
 
+/// It was "a pack of its own, perhaps", and its counter was lost, which shows the energy of gaps.
+TEST(MavlinkFamily, TheCounterOfABatteryWithoutCurrentIsThatOfTheStatus) {
+    test::MavlinkSender vehicle;
+    const auto series = series_of(vehicle, [&](int i) {
+        return std::vector{vehicle.battery({16'000}, -1, 10 * i),
+                           vehicle.status(15'900, static_cast<std::int16_t>(900 + i))};
+    });
+    const auto data = select_tracks(series);
+    EXPECT_NEAR(value_at(data.charge_ah, 50.0), 0.5, 1e-9);
+    EXPECT_EQ(data.voltage_v.value.front(), 15.9);
+    EXPECT_THAT(data.power_w.notes, testing::IsEmpty());
+}
+
 TEST(MavlinkFamily, HasNoPowerWhereTheCurrentIsUnknown) {
     test::MavlinkSender vehicle;
     const auto series = series_of(vehicle, [&](int) { return std::vector{vehicle.status(11'000, -1)}; });
