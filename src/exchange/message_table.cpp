@@ -163,8 +163,8 @@ telemetry::TelemetryLog read_message_of(const flight::FlightFile& file, const st
     return read_message(file, std::move(configuration), {message, fields});
 }
 
-/// The sender that --aircraft names: the only one of an autopilot's log by any name, of several in a .tlog that with the
-/// number, which may follow a name ("ArduCopter 2").
+/// The sender that --aircraft names: the only one of an autopilot's log by any name, of several in a .tlog that with
+/// the number, which may follow a name ("ArduCopter 2").
 std::optional<std::string> named_sender(const flight::FlightFile& file, const telemetry::TelemetryLog& log,
                                         const std::optional<std::string>& aircraft) {
     if (!aircraft || !file.autopilot()) return aircraft;

@@ -104,8 +104,8 @@ const LogFamily& family_of(telemetry::AutopilotFormat format) {
     }
 }
 
-/// The recordings of each aircraft in a log; several of a ground station's log are candidates of the same recording, and
-/// those that follow each other with one number are recordings.
+/// The recordings of each aircraft in a log; several of a ground station's log are candidates of the same recording,
+/// and those that follow each other with one number are recordings.
 std::vector<Candidates> read_autopilot(const FlightFile& file) {
     const auto format = file.autopilot().value();
     const auto& family = family_of(format);
@@ -128,7 +128,8 @@ std::vector<Candidates> read_autopilot(const FlightFile& file) {
     return recordings;
 }
 
-/// An aircraft of several in a log (LoadOptions::aircraft). Not required: a log without it is read as if none were named.
+/// An aircraft of several in a log (LoadOptions::aircraft). Not required: a log without it is read as if none were
+/// named.
 struct AircraftRequest {
     const std::optional<std::string>& name;
     bool required;

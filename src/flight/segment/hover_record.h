@@ -9,8 +9,8 @@
 namespace flightwatt::flight {
 
 /// Finds the spans in which the motors of a rotorcraft carry it, from the first to the last point at which they give 70
-/// % of their usual effort in flight, or of that of a lighter flight; empty for other aircraft, and without throttle and
-/// power. A landing or disarming in between separates two of them; if the log states neither, idle motors do.
+/// % of their usual effort in flight, or of that of a lighter flight; empty for other aircraft, and without throttle
+/// and power. A landing or disarming in between separates two of them; if the log states neither, idle motors do.
 std::vector<IndexSpan> find_hovers(const FlightData& data, const ResampledFlight& grid);
 
 /// Returns whether a state changes to a value after `from_s` and up to `to_s`.

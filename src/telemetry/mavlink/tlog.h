@@ -13,8 +13,9 @@ namespace flightwatt::telemetry {
 bool is_tlog(std::string_view bytes);
 
 /// Reads the requested messages of each vehicle in a .tlog, the vehicles in the order of their numbers, then of time. A
-/// vehicle is a system with an autopilot, by its heartbeats; its id is the system's number, which several that are flown
-/// in turn may have. Messages of ground stations, cameras and companion computers are left out. Times are seconds since the first packet. Throws InputError without a vehicle.
+/// vehicle is a system with an autopilot, by its heartbeats; its id is the system's number, which several that are
+/// flown in turn may have. Messages of ground stations, cameras and companion computers are left out. Times are seconds
+/// since the first packet. Throws InputError without a vehicle.
 std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesystem::path& file,
                                     const std::vector<MessageRequest>& wanted);
 

@@ -16,8 +16,8 @@ namespace {
 
 using testing::IsEmpty;
 
-/// Ten samples a second: idle at a quarter of the throttle, hovering from 20 to 60 s and from 70 to 100 s at 1.5 m, with
-/// a barometer that drifts by 2 m.
+/// Ten samples a second: idle at a quarter of the throttle, hovering from 20 to 60 s and from 70 to 100 s at 1.5 m,
+/// with a barometer that drifts by 2 m.
 FlightSeries hopping_copter() {
     FlightSeries series;
     series.firmware = "rotorcraft";

@@ -124,8 +124,8 @@ TEST(Tlog, StatesLostMessagesAndARestartOfTheAutopilot) {
     EXPECT_THAT(notes, Contains(HasSubstr("24.0 % of the messages of system 1 were lost on the link")));
 }
 
-/// The clock of a laptop or a computer on board is set while it records: a flight was an hour longer, or in two parts, and
-/// a recording that begins years ago was refused.
+/// The clock of a laptop or a computer on board is set while it records: a flight was an hour longer, or in two parts,
+/// and a recording that begins years ago was refused.
 TEST(Tlog, TimesContinueWhereTheClockOfTheStationIsSet) {
     for (const double step_s : {40.0, -40.0, 1e8}) {
         SCOPED_TRACE(step_s);
