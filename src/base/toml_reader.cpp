@@ -366,7 +366,12 @@ void TomlTable::refuse_unknown_keys() const {
         if (!asked_->contains(name)) unknown.push_back({where(name), name, known_synonym(name, known), path_, known});
     if (unknown.empty()) return;
     if (!root_->collects) refuse_keys(unknown);
-    root_->unknown.insert(root_->unknown.end(), unknown.begin(), unknown.end());
+    for (auto& key : unknown) {
+        const auto is_here = [&](const UnknownKey& other) {
+            return std::pair(other.where.line, other.where.column) == std::pair(key.where.line, key.where.column);
+        };
+        if (std::ranges::none_of(root_->unknown, is_here)) root_->unknown.push_back(std::move(key));  // read once more
+    }
 }
 
 void TomlTable::collect_unknown_keys(const std::function<void()>& read) const {

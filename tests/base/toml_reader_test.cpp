@@ -190,6 +190,15 @@ TEST(UnknownKeys, OfAllTablesAreReportedTogether) {
         << "one table alone";
 }
 
+TEST(UnknownKeys, OfATableThatIsReadTwiceAreNamedOnce) {
+    const auto root = parse_toml("[t]\ncruse = 3\n", "m.toml");
+    const auto read = [&] {
+        for (int i = 0; i < 2; ++i) root.table("t").refuse_keys_except({"cruise"});
+    };
+    EXPECT_EQ(test::rejected([&] { root.collect_unknown_keys(read); }),
+              "m.toml:2:1: unknown key 'cruse'; did you mean 'cruise'?");
+}
+
 TEST(UnknownKeys, AreNamedByPartsAndSynonyms) {
     const auto refused = [](const std::string& key) {
         const auto root = parse_toml(key + " = 1", "m.toml");
