@@ -27,8 +27,8 @@ std::optional<Interval> capacity_interval_ah(const MissionSetup& mission) {
 void require_single_flight(const MissionSetup& mission) {
     if (mission.packs)
         throw InputError({mission.file}, "the mission has [packs], and this is computed for one flight alone",
-                         "simulate, plan and report divide it, without --samples, --disturb, --probability and limits; "
-                         "for one flight leave [packs] out");
+                         "simulate, plan and report divide it, without options for one flight such as --samples, "
+                         "--disturb and limits; for one flight leave [packs] out");
 }
 
 mechanical::PhysicalModel constant_cruise_power(const mechanical::MechanicalModel& model) {
