@@ -231,7 +231,7 @@ PlannedMissionText planned_mission_toml(std::string_view text, const std::filesy
     }
     std::optional<ChosenValues> chosen;
     if (auto* cruise = root.get_as<toml::table>("path"); cruise != nullptr && !pack) {
-        for (const std::string_view key : {"waypoints", "flight_plan", "area"})
+        for (const std::string_view key : {"waypoints", "flight_plan", "area", "terrain"})
             move_path(*cruise, key, from, to, renamed);
         if (survey) chosen = choose_lines(*cruise, *survey);
     }

@@ -245,6 +245,15 @@ TEST(Plan, OfAPackHasTheAirspeedThatItsFileDoesNotState) {
     }
 }
 
+TEST(Plan, NamesTheFilesOfItsPathFromWhereItIsWritten) {
+    const auto folder = test::scratch_dir();
+    const auto written = planned_mission_toml(
+        "mechanical = 'm.toml'\nbattery = 'b.toml'\n[path]\nwaypoints = 'a.plan'\nterrain = 'srtm'\n",
+        folder / "m.toml", {}, {}, folder / "planned");
+    EXPECT_NE(written.text.find("waypoints = \"../a.plan\"\nterrain = \"../srtm\"\n"), std::string::npos)
+        << written.text;
+}
+
 struct WrittenPlan {
     MissionPlan plan;
     std::string text;
