@@ -92,9 +92,10 @@ std::string describe(const mission::MissionPlan& plan, const mission::MissionSet
                            ? units::percentage(plan.plan.utility_bound - utility, plan.plan.utility_bound)
                            : 0.0;
     const auto gap_text = gap < 1e-3 ? "below 0.001" : fmt::format("{:.3f}", gap);
-    const auto bound = plan.plan.bound_is_proven
-                           ? fmt::format("at most {:.6g} is possible (gap {} %)", plan.plan.utility_bound, gap_text)
-                           : "no bound is known, as the battery is charged in flight";
+    const auto bound = !plan.plan.bound_is_proven ? "no bound is known, as the battery is charged in flight"
+                       : plan.sources
+                           ? fmt::format("at most {:.6g} is possible without a margin", plan.plan.utility_bound)
+                           : fmt::format("at most {:.6g} is possible (gap {} %)", plan.plan.utility_bound, gap_text);
     auto text = fmt::format("{}: utility {:.6g}, {}; lands with {:.2f} % of its charge, reserve {:.2f} %", mission.name,
                             utility, bound, *plan.summary.final_soc_percent, mission.reserve_soc_percent);
     if (plan.sources) text += fmt::format(" and {:.2f} points of margin", plan.margin_percent);

@@ -214,6 +214,26 @@ TEST(Plan, KeepsAMarginForFlightsThatDiffer) {
     EXPECT_EQ(wider.sources->varied.size(), plan.sources->varied.size() + 1);
 }
 
+/// Of two components as strong, the one of less utility has no spread: without a margin it runs for nine tenths of the
+/// time, which is more than the other one can with a margin of its own.
+TEST(Plan, WithAProbabilityHasABoundThatHoldsForSchedulesWithASmallerMargin) {
+    const auto folder = test::scratch_dir();
+    for (const auto* name : {"a.csv", "b.csv"}) write_file_atomically(folder / name, "q,power_w\n0,0\n1,12\n");
+    const auto problem = std::get<PlanningProblem>(parse_mission(
+        "mechanical = 'none'\nduration_s = { takeoff = 0, cruise = 3600, landing = 0 }\nreserve_soc_percent = 10\n"
+        "battery = { voltage_v = 10, resistance_ohm = 0, capacity_ah = 1.21 }\n"
+        "components.a = { profile = 'a.csv', utility = { weight = 1 } }\n"
+        "components.b = { profile = 'b.csv', utility = { weight = 0.95 } }\n"
+        "plan.slot_s = 360\nuncertainty.compute_sd_percent.a = 30\n",
+        folder / "m.toml", {.allow_unplanned = true}));
+    const auto plan = plan_mission(problem, 0.95);
+    ASSERT_TRUE(plan.plan.feasible);
+    EXPECT_GT(plan.margin_percent, 1.0);
+    constexpr double of_b_alone = 0.95 * 0.9;
+    EXPECT_GE(plan.plan.utility_bound, of_b_alone);
+    EXPECT_NE(summary_with_origin(plan).schedule, ScheduleOrigin::optimal);
+}
+
 TEST(Plan, IsWrittenAsAMission) {
     const auto path = test::source_dir() / "missions" / "paper" / "plan.toml";
     auto mission = paper_with_reserve(2.0);
