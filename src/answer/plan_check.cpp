@@ -72,8 +72,10 @@ class PlanFlight {
     Flown fly(const Change& change = {}, Draws draws = Draws::always) const { return fly(mission(change), draws); }
 
     Flown fly(mission::MissionVariant mission, Draws draws = Draws::always) const {
+        constexpr double most_rows = 20000.0;  // of its curve: plans of weeks are checked, too
         const auto prepared = prepare_mission(mission);
-        Flown flown{std::move(mission), simulate_prepared(prepared).simulation, {}, {}};
+        const double row_s = std::max(1.0, mission::timeline_of(prepared.setup.duration_s).duration_s / most_rows);
+        Flown flown{std::move(mission), simulate_prepared(prepared, {row_s}).simulation, {}, {}};
         if (draws == Draws::none || !has_uncertainty(prepared.setup)) return flown;
         if (draws == Draws::if_kept && !flown.summary().keeps_reserve) return flown;
         const auto drawn = sample_flights(prepared, {}, {question_.samples, question_.seed});
