@@ -207,9 +207,10 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
         throw InputError({setup_of(mission).file}, "the mission has a schedule already: there is nothing to plan",
                          "add [plan]: entries of [[schedule]] are then fixed, and the other slots planned");
     }
-    cli::warn_of_setup(call, problem->setup);
+    if (!problem->survey) cli::warn_of_setup(call, problem->setup);
     auto plan = plan_mission(*problem, arguments.probability);
     const auto& setup = plan.mission.setup;
+    if (problem->survey) cli::warn_of_setup(call, setup);  // of the lines that were chosen
     plan.summary.by_flights = landing_by_flights(setup, plan.mission.schedule);
     if (!plan.plan.feasible) {
         const auto& stated = *problem;

@@ -57,7 +57,9 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     constexpr std::size_t rows = 24;
     const auto text = read_file(call.inputs.front());
     const auto mission = mission::parse_mission(text, call.inputs.front());
-    cli::warn_of_setup(call, setup_of(mission));
+    const auto& stated = setup_of(mission);
+    const bool chooses_lines = stated.survey && stated.survey->is_chosen;
+    if (!chooses_lines) cli::warn_of_setup(call, stated);
     const bool draws = arguments.sampling.samples || arguments.sampling.disturbances || arguments.schedule_file;
     if (setup_of(mission).packs && !draws) {
         const auto all = mission::fly_packs(mission, {.output_s = arguments.step_s});
@@ -71,6 +73,7 @@ int simulate_mission(const cli::StageCall& call, const SimulateArguments& argume
     mission::SimulationOptions steps;
     steps.output_s = arguments.step_s;
     auto flight = simulate_prepared(prepared, steps, disturbed_by);
+    if (chooses_lines) cli::warn_of_setup(call, flight.setup ? *flight.setup : prepared.setup);
     auto& summary = flight.simulation.summary;
     if (summary.undeliverable && !arguments.requirement.text) throw NoResultError(describe(summary));
     if (summary.undeliverable) return check_requirement(call, arguments.requirement, {summary});

@@ -304,6 +304,20 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
 
 MissionVariant scheduled_mission(const TomlTable& root, const MissionReadOptions& reading, MissionSetup mission);
 
+/// A mission without what was noted as its path was read: other lines have notes of their own.
+MissionSetup without_notes_of_path(const TomlTable& root, const MissionReadOptions& reading, MissionSetup setup) {
+    auto read = setup;
+    read.notes.clear();
+    read.uncertain.clear();
+    read_cruise_path(root, reading, read);
+    const auto erase = [](std::vector<std::string>& texts, const std::vector<std::string>& of_path) {
+        std::erase_if(texts, [&](const auto& text) { return std::ranges::find(of_path, text) != of_path.end(); });
+    };
+    erase(setup.notes, read.notes);
+    erase(setup.uncertain, read.uncertain);
+    return setup;
+}
+
 /// The choices of lines over the area of a mission; none if they are fixed or `reading` chooses.
 std::shared_ptr<const SurveyChoices> read_survey(const TomlTable& root, const MissionReadOptions& reading,
                                                  const MissionSetup& setup) {
@@ -311,11 +325,11 @@ std::shared_ptr<const SurveyChoices> read_survey(const TomlTable& root, const Mi
     auto choices = read_survey_choices(root);
     if (!choices) return nullptr;
     auto mutex = std::make_shared<std::mutex>();  // tables note which of their keys were read
-    choices->mission_with = [=](const path::SurveyLayout& layout) {
+    choices->mission_with = [root, reading, mutex,
+                             bare = without_notes_of_path(root, reading, setup)](const path::SurveyLayout& layout) {
         auto chosen = reading;
         chosen.survey = layout;
-        auto changed = setup;
-        changed.notes.clear();
+        auto changed = bare;
         const std::lock_guard lock(*mutex);
         read_cruise_path(root, chosen, changed);
         return std::get<PlanningProblem>(scheduled_mission(root, chosen, std::move(changed)));

@@ -74,6 +74,7 @@ MissionSetup actual_with_lines(const MissionSetup& first, const MissionSetup& ch
     auto flown = actual;
     flown.survey = chosen.survey;
     flown.uncertain = chosen.uncertain;
+    flown.notes = chosen.notes;
     flown.cruise_level = chosen.cruise_level;
     flown.duration_s[Phase::cruise] = chosen.duration_s[Phase::cruise] * longer;
     if (auto& measured = flown.measured_power[Phase::cruise]) {

@@ -144,6 +144,18 @@ TEST(SurveyPlan, KeepsTheReserveWithAProbability) {
     EXPECT_GE(sure.plan.utility_bound, *sure.summary.utility);
 }
 
+/// Turns between lines 20 m apart do not fit, between 100 m they do.
+TEST(SurveyPlan, HasTheNotesOfItsLinesAndNotOfThoseThatWereReadFirst) {
+    for (const auto& [chosen, stated] : {std::pair{"spacing_m = { levels = [20, 100] }\n", "spacing_m = 20\n"},
+                                         std::pair{"spacing_m = { levels = [20, 100] }\n", "spacing_m = 100\n"}}) {
+        const auto lines = field(stated).setup;
+        const auto planned = field(chosen).survey->mission_with(lines.survey->layout).setup;
+        EXPECT_EQ(planned.notes, lines.notes);
+        EXPECT_EQ(planned.uncertain, lines.uncertain);
+    }
+    EXPECT_NE(field("spacing_m = 20\n").setup.notes, field("spacing_m = 100\n").setup.notes);
+}
+
 TEST(SurveyPlan, IsInfeasibleIfNoLinesLand) {
     const auto plan = plan_mission(field("spacing_m = { min = 10, max = 12 }\n"));
     EXPECT_FALSE(plan.plan.feasible);
