@@ -13,6 +13,8 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace flightwatt::mission {
 namespace {
 
@@ -232,6 +234,11 @@ MissionPlan plan_with_lines(const PlanningProblem& problem, const std::optional<
         const bool is_better = !best || merit(plan.plan) > merit(best->plan);
         if (is_better) best = std::move(plan);
     }
+    const auto refused = std::ranges::count_if(ways, [](const auto& way) { return way.refused.has_value(); });
+    if (refused > 0)
+        best->mission.setup.notes.push_back(
+            fmt::format("{} of {} ways to cover the area cannot be flown, for example: {}", refused, ways.size(),
+                        ways.back().refused->what()));
     best->plan.utility_bound = best->plan.feasible ? std::max(utility_bound, best->plan.utility) : 0.0;
     best->plan.bound_is_proven = std::ranges::all_of(ways, &BoundedLayout::bound_is_proven);
     return std::move(*best);

@@ -156,6 +156,25 @@ TEST(SurveyPlan, HasTheNotesOfItsLinesAndNotOfThoseThatWereReadFirst) {
     EXPECT_NE(field("spacing_m = 20\n").setup.notes, field("spacing_m = 100\n").setup.notes);
 }
 
+TEST(SurveyPlan, NamesTheWaysThatCannotBeFlown) {
+    const auto text = R"(mechanical = "fits/mechanical/synthetic-wing.toml"
+battery = "fits/battery/synthetic-3s.toml"
+[path]
+area = "missions/synthetic/field.geojson"
+airspeed_m_per_s = { levels = [13, 40] }
+spacing_m = 60
+heading_deg = 30
+swath_m = 60
+utility = { weight = 1 }
+)";
+    const auto read = parse_mission(text, test::source_dir() / "field.toml", {.allow_unplanned = true});
+    const auto plan = plan_mission(std::get<PlanningProblem>(read));
+    ASSERT_FALSE(plan.mission.setup.notes.empty());
+    const auto& note = plan.mission.setup.notes.back();
+    EXPECT_EQ(note.find("1 of 2 ways to cover the area cannot be flown, for example: "), 0U) << note;
+    EXPECT_NE(note.find("40 m/s is beyond what the model's flights flew"), std::string::npos) << note;
+}
+
 TEST(SurveyPlan, IsInfeasibleIfNoLinesLand) {
     const auto plan = plan_mission(field("spacing_m = { min = 10, max = 12 }\n"));
     EXPECT_FALSE(plan.plan.feasible);
