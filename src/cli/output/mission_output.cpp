@@ -291,7 +291,8 @@ void warn_of_lost_comments(const StageCall& call, const mission::PlannedMissionT
     if (written.lost_comments)
         warn(call,
              "the result lacks the mission's comments and order; to keep them, write [plan], [policy] and [[schedule]] "
-             "as tables of their own, not inline or dotted");
+             "as tables of their own, not inline or dotted, and choices of lines in [path] on one line each: "
+             "spacing_m = { levels = [30, 50] }");
 }
 
 void warn_of_setup(const StageCall& call, const mission::MissionSetup& mission) {
