@@ -1,6 +1,7 @@
 #include "live/link_mission.h"
 
 #include "base/number.h"
+#include "base/units.h"
 #include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
@@ -33,9 +34,9 @@ bool LinkMission::receive(const IncomingMessage& message) {
         system_ = packet->system;
         is_ardupilot_ = of("autopilot") == ardupilot;
         is_disarmed_ = (static_cast<unsigned>(of("base_mode")) & armed_flag) == 0;
-    } else if (name == "HOME_POSITION") {
-        home_ = {of("latitude") / units_per_degree, of("longitude") / units_per_degree,
-                 of("altitude") * metre_per_unit};
+    } else if (name == "HOME_POSITION" && (of("latitude") != 0.0 || of("longitude") != 0.0)) {
+        stated_home_ = {of("latitude") / units_per_degree, of("longitude") / units_per_degree,
+                        of("altitude") * metre_per_unit};
     } else if (name == "GLOBAL_POSITION_INT" && is_disarmed_ && (of("lat") != 0.0 || of("lon") != 0.0)) {
         parked_ = {of("lat") / units_per_degree, of("lon") / units_per_degree, of("alt") * metre_per_unit};
     } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
@@ -55,13 +56,14 @@ bool LinkMission::receive(const IncomingMessage& message) {
                    has_place ? of("y") / per_degree : 0.0, of("z")}};
         for (auto& value : item.parameters)
             if (!std::isfinite(value)) value = 0.0;
+        if (is_ardupilot_ && of("seq") == 0.0 && item.has_place()) stated_home_ = item.place();
         items_[static_cast<std::size_t>(of("seq"))] = item;
     }
     if (!is_whole()) return false;
     is_outdated_ = false;
-    if (items_ == whole_ && whole_has_home_ == has_home()) return false;
+    if (items_ == whole_ && !has_other_home()) return false;
     whole_ = items_;
-    whole_has_home_ = has_home();
+    whole_home_ = home();
     return true;
 }
 
@@ -82,11 +84,21 @@ std::vector<std::string> LinkMission::requests(double now_s) {
     return packets;
 }
 
-bool LinkMission::has_home() const {
-    return home_ || parked_ || (is_ardupilot_ && !items_.empty() && items_.begin()->second.has_place());
+/// Nearer is the same home: it is stated anew with each position of a receiver.
+bool LinkMission::is_elsewhere(const Place& home, const Place& than) {
+    constexpr double near_m = 30.0;
+    constexpr double metre_per_degree = 111'320.0;
+    constexpr double turn_deg = 360.0;
+    const double east_deg = std::remainder(home[1] - than[1], turn_deg) * std::cos(than[0] / units::degree_per_rad);
+    return metre_per_degree * std::hypot(home[0] - than[0], east_deg) > near_m;
 }
 
-/// ArduPilot's first item is its home, which has no place until it is set; others keep it apart from the items.
+bool LinkMission::has_other_home() const {
+    return has_home() != whole_home_.has_value() || (has_home() && is_elsewhere(*home(), *whole_home_));
+}
+
+/// ArduPilot's first item is its home as it was when it was read, without a place until it is set; others keep it apart
+/// from the items.
 std::string LinkMission::waypoints() const {
     std::string text = "QGC WPL 110\n";
     const auto add = [&](std::size_t number, const Item& item) {
@@ -94,15 +106,16 @@ std::string LinkMission::waypoints() const {
             fmt::format("{}\t0\t{}\t{}\t{}\t1\n", number, item.frame, item.command, fmt::join(item.parameters, "\t"));
     };
     auto items = whole_;
-    const auto home_at = [](const std::array<double, 3>& at) {
+    const auto home_at = [](const Place& at) {
         return Item{frame_above_sea, waypoint_command, {0.0, 0.0, 0.0, 0.0, at[0], at[1], at[2]}};
     };
-    const auto home = home_ ? home_ : parked_;
-    if (is_ardupilot_ && home && !items.begin()->second.has_place()) items.begin()->second = home_at(*home);
+    auto& first_item = items.begin()->second;
+    if (is_ardupilot_ && home() && (!first_item.has_place() || is_elsewhere(*home(), first_item.place())))
+        first_item = home_at(*home());
     if (!is_ardupilot_) {
         const auto placed = std::ranges::find_if(items, [](const auto& of) { return of.second.has_place(); });
-        const auto& first = (placed == items.end() ? items.begin() : placed)->second.parameters;
-        add(0, home_at(home.value_or(std::array{first[4], first[5], 0.0})));
+        const auto& first = placed == items.end() ? first_item : placed->second;
+        add(0, home_at(home().value_or(Place{first.parameters[4], first.parameters[5], 0.0})));
     }
     for (const auto& [number, item] : items) add(number + (is_ardupilot_ ? 0 : 1), item);
     return text;

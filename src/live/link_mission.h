@@ -14,13 +14,14 @@
 namespace flightwatt::live {
 
 /// Collects the mission of one aircraft from its messages on a link of MAVLink, which pass by while a ground station
-/// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected.
+/// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected. Places are
+/// {latitude_deg, longitude_deg, altitude above the sea in m}.
 class LinkMission {
   public:
     /// Asks as this component of this system.
     LinkMission(std::uint8_t system, std::uint8_t component) : sender_(system, component) {}
 
-    /// Takes a message of the aircraft; returns whether its mission is new and whole.
+    /// Takes a message of the aircraft; returns whether its mission is whole, and new or flown from another home.
     bool receive(const IncomingMessage& message);
     /// Returns the packets that ask for what is missing, at most once a second on a clock that does not go back; none
     /// before the aircraft was heard, and once the mission is whole.
@@ -28,31 +29,36 @@ class LinkMission {
     /// Returns whether another mission was uploaded since, which is not whole yet.
     bool is_outdated() const { return is_outdated_; }
     /// Returns whether its home is known: by the mission, by the aircraft, or as the place where this was disarmed.
-    bool has_home() const;
+    bool has_home() const { return home().has_value(); }
     /// Returns the whole mission as a file of waypoints ("QGC WPL 110"), with its home.
     std::string waypoints() const;
 
   private:
+    using Place = std::array<double, 3>;
     struct Item {
         double frame = 0.0;
         double command = 0.0;
         std::array<double, 7> parameters = {};  ///< the last three: latitude, longitude, altitude
         bool has_place() const { return parameters[4] != 0.0 || parameters[5] != 0.0; }
+        Place place() const { return {parameters[4], parameters[5], parameters[6]}; }
         bool operator==(const Item&) const = default;
     };
 
+    static bool is_elsewhere(const Place& home, const Place& than);
+    const std::optional<Place>& home() const { return stated_home_ ? stated_home_ : parked_; }
+    bool has_other_home() const;
     bool is_whole() const { return count_ && items_.size() == *count_ && *count_ > 0; }
 
     telemetry::MavlinkSender sender_;
     double system_ = 0.0;  ///< of the aircraft; 0: not heard yet
     bool is_ardupilot_ = false;
     bool is_disarmed_ = false;
-    std::optional<std::array<double, 3>> home_;    ///< latitude, longitude, altitude above the sea
-    std::optional<std::array<double, 3>> parked_;  ///< the same, where it last was disarmed
+    std::optional<Place> stated_home_;  ///< by the aircraft or its mission, whichever came last
+    std::optional<Place> parked_;       ///< where it last was disarmed
     std::optional<std::size_t> count_;
     std::map<std::size_t, Item> items_;
     std::map<std::size_t, Item> whole_;  ///< the last whole mission
-    bool whole_has_home_ = false;
+    std::optional<Place> whole_home_;    ///< its home
     bool is_outdated_ = false;
     double asked_s_ = -1.0;
 };

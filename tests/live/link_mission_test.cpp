@@ -3,6 +3,7 @@
 #include "helpers/mavlink_packets.h"
 #include "telemetry/mavlink_decoder.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -121,6 +122,40 @@ TEST(LinkMission, BeginsWhereTheAircraftStandsUntilItsHomeIsStated) {
         EXPECT_THAT(mission.waypoints(), HasSubstr("0\t0\t0\t16\t0\t0\t0\t0\t47\t9\t488\t1\n"));
         EXPECT_FALSE(mission.receive(message_of(position(vehicle, 470'000'001)))) << "it is not read again";
     }
+}
+
+std::string home_at(test::MavlinkSender& vehicle, double latitude_deg) {
+    return vehicle.packet(242, little_endian(static_cast<std::int32_t>(std::lround(latitude_deg * 1e7))) +
+                                   little_endian(std::int32_t{80'000'000}) + little_endian(std::int32_t{488'000}) +
+                                   std::string(40, '\0'));
+}
+
+/// A home that was set elsewhere in flight, or at arming after a walk, left the way back at the former one.
+TEST(LinkMission, IsNewWhenItsHomeIsSetElsewhere) {
+    constexpr double metre_deg = 1.0 / 111'320.0;
+    for (const std::uint8_t autopilot : {3, 12}) {
+        test::MavlinkSender vehicle;
+        LinkMission mission(245, 191);
+        mission.receive(message_of(vehicle.heartbeat(2, autopilot)));
+        mission.receive(message_of(home_at(vehicle, 47.0)));
+        mission.receive(message_of(count_of(vehicle, 2)));
+        mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F)));
+        ASSERT_TRUE(mission.receive(message_of(item(vehicle, 1, 47.01, 50.0F))));
+        EXPECT_FALSE(mission.receive(message_of(home_at(vehicle, 47.0 + 20.0 * metre_deg)))) << "it drifts";
+        EXPECT_TRUE(mission.receive(message_of(home_at(vehicle, 46.98)))) << "2.2 km away";
+        EXPECT_FALSE(mission.receive(message_of(home_at(vehicle, 46.98)))) << "it is known";
+        EXPECT_THAT(mission.waypoints(), HasSubstr("QGC WPL 110\n0\t0\t0\t16\t0\t0\t0\t0\t46.98\t8\t488\t1\n"));
+    }
+}
+
+TEST(LinkMission, OfArduPilotHasTheHomeThatWasReadLast) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat()));
+    mission.receive(message_of(home_at(vehicle, 46.0)));
+    mission.receive(message_of(count_of(vehicle, 1)));
+    EXPECT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.0, 30.0F))));
+    EXPECT_THAT(mission.waypoints(), HasSubstr("\n0\t0\t3\t16\t0\t0\t0\t0\t47\t8\t30\t1\n"));
 }
 
 /// Mission Planner reads missions of MAVLink 1 by this message.
