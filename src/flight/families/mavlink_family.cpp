@@ -290,10 +290,50 @@ bool has_its_power(const telemetry::MessageTable& status, const telemetry::Messa
            has_values(status, "current_battery", unknown);
 }
 
+constexpr double missed_s = 10.0;  // of a message, while another one comes
+
 /// Whether the status continues where the battery's own message has ended.
 bool outlasts(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
-    constexpr double ended_s = 10.0;
-    return status.time_s.back() > battery.time_s.back() + ended_s;
+    return status.time_s.back() > battery.time_s.back() + missed_s;
+}
+
+/// Whether the heartbeats state an armed vehicle (or a disarmed one) in an interval.
+bool states_armed(const telemetry::MessageTable* heartbeat, bool armed, double from_s, double to_s) {
+    const auto* mode = heartbeat == nullptr ? nullptr : heartbeat->column("base_mode");
+    for (std::size_t i = 0; mode != nullptr && i < mode->values.size(); ++i) {
+        const double time_s = heartbeat->time_s[i];
+        if (time_s >= from_s && time_s <= to_s && (is_armed_mode({mode->values[i]}) != 0.0) == armed) return true;
+    }
+    return false;
+}
+
+/// Whether a message begins only while the vehicle is armed, as the station asked for it then, so long after another.
+bool begins_in_flight(const telemetry::MessageTable& message, const telemetry::MessageTable& other,
+                      const telemetry::MessageTable* heartbeat, double later_s) {
+    return states_armed(heartbeat, true, other.time_s.front(), message.time_s.front() - later_s);
+}
+
+/// Leaves out height and speed by the estimated position where this begins or ends in flight, as without a fix, if the
+/// head-up display has them from the ground on.
+void leave_out_partial_position(telemetry::MessageTable& position, const telemetry::MessageTable& hud,
+                                const telemetry::MessageTable* heartbeat, std::vector<std::string>& notes) {
+    if (position.empty() || hud.empty()) return;
+    const double begin_s = hud.time_s.front();
+    const bool begins = begins_in_flight(position, hud, heartbeat, missed_s) &&
+                        states_armed(heartbeat, false, begin_s, position.time_s.front() - missed_s);
+    const bool ends = states_armed(heartbeat, true, position.time_s.back() + missed_s, hud.time_s.back()) &&
+                      states_armed(heartbeat, false, begin_s, position.time_s.back());
+    if (!begins && !ends) return;
+    const auto has = [&](const char* field) { return has_values(hud, field, no_value); };
+    const bool replaces_height = has("alt");
+    const bool replaces_speed = has("groundspeed");
+    std::erase_if(position.columns, [&](const telemetry::Column& column) {
+        const bool is_speed = column.field == "vx" || column.field == "vy";
+        return (replaces_height && column.field == "relative_alt") || (replaces_speed && is_speed);
+    });
+    if (replaces_height)
+        notes.push_back(fmt::format("GLOBAL_POSITION_INT {} in flight: the altitude is that of VFR_HUD",
+                                    begins ? "begins" : "ends"));
 }
 
 /// A time in which the battery's own message is silent, and the status is not.
@@ -302,13 +342,15 @@ struct Silence {
     double duration_s;
 };
 
-/// The first silence, from the first status on or between two of the battery's messages; std::nullopt without one.
-std::optional<Silence> find_silence(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
-    constexpr double late_s = 10.0;
-    constexpr double pause_s = 30.0;
+/// The first silence: from the first status on, if the battery's message begins in flight, or between two of its messages;
+/// std::nullopt without one.
+std::optional<Silence> find_silence(const telemetry::MessageTable& status, const telemetry::MessageTable& battery,
+                                    const telemetry::MessageTable* heartbeat) {
+    constexpr double pause_s = 30.0;  // less is not worth the battery's counters
     constexpr double dense_s = 5.0;
     const double first_s = status.time_s.front();
-    if (battery.time_s.front() > first_s + late_s) return Silence{first_s, battery.time_s.front() - first_s};
+    if (begins_in_flight(battery, status, heartbeat, pause_s))
+        return Silence{first_s, battery.time_s.front() - first_s};
     for (std::size_t i = 1; i < battery.time_s.size(); ++i) {
         const Silence silence{battery.time_s[i - 1], battery.time_s[i] - battery.time_s[i - 1]};
         if (silence.duration_s <= pause_s) continue;
@@ -364,6 +406,10 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     const auto hud = find("VFR_HUD");
     if (hud != tables.end() && (status == tables.end() || !has_airspeed_sensor(*status)))
         std::erase_if(hud->columns, [](const telemetry::Column& column) { return column.field == "airspeed"; });
+    const auto beat = find("HEARTBEAT");
+    const auto* heartbeat = beat == tables.end() ? nullptr : &*beat;
+    if (const auto position = find("GLOBAL_POSITION_INT"); position != tables.end() && hud != tables.end())
+        leave_out_partial_position(*position, *hud, heartbeat, log.facts.notes);
     if (battery != tables.end()) leave_out_other_batteries(*battery, log.facts.notes);
     const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
                              has_values(*battery, "current_battery", unknown);
@@ -375,7 +421,8 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     const bool is_replaced = has_battery && status != tables.end() && has_its_power(*status, *battery);
     const bool is_rare = is_replaced && is_denser(*status, *battery);
     const bool has_ended = is_replaced && !is_rare && outlasts(*status, *battery);
-    const auto silence = is_replaced && !is_rare && !has_ended ? find_silence(*status, *battery) : std::nullopt;
+    const auto silence =
+        is_replaced && !is_rare && !has_ended ? find_silence(*status, *battery, heartbeat) : std::nullopt;
     if (has_ended)
         log.facts.notes.push_back(fmt::format("BATTERY_STATUS ends {:.0f} s before SYS_STATUS, which is used",
                                               status->time_s.back() - battery->time_s.back()));

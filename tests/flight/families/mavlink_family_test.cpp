@@ -7,6 +7,9 @@
 #include "helpers/rejected.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
+#include <tuple>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -198,6 +201,51 @@ TEST(MavlinkFamily, TakesTheStatusThatContinuesWhereTheBatteryHasEnded) {
         return packets;
     });
     EXPECT_NEAR(select_tracks(series).power_w.time_s.back(), 119.0, 1.0);
+}
+
+/// A flight of which a message is missing from and to these seconds.
+LoadedFlight flight_without(std::uint32_t id, int from_s, int to_s) {
+    test::MavlinkSender vehicle;
+    std::string log;
+    for (int i = 0; i < 300; ++i) {
+        const bool flies = i >= 60 && i < 270;
+        const double height_m = !flies ? 0.0 : std::min({4.0 * (i - 60), 60.0, 4.0 * (270 - i)});
+        const auto current_ca = static_cast<std::int16_t>(flies ? 1'500 + i % 7 : 50);
+        const auto add = [&](std::uint32_t of, const std::string& packet) {
+            if (of != id || i < from_s || i >= to_s) log += test::tlog_entry(i, packet);
+        };
+        add(0, vehicle.heartbeat(2, 3, flies ? 209 : 81));
+        add(1, vehicle.status(15'800, current_ca));
+        add(147, vehicle.battery({15'800}, current_ca, 4 * std::clamp(i - 60, 0, 210)));
+        add(33, vehicle.position(i, height_m));
+        add(74, vehicle.hud(0.0F, static_cast<float>(500.0 + height_m), flies ? 50 : 0));
+    }
+    return load_flight(written(log));
+}
+
+/// A message that the station asked for in flight, or that needs a fix, hid the one that has the whole flight: its
+/// take-off was missing.
+TEST(MavlinkFamily, HasTheWholeFlightWhereOneMessageBeginsOrEndsInIt) {
+    constexpr std::uint32_t battery = 147;
+    constexpr std::uint32_t position = 33;
+    const auto energy_wh = [](const LoadedFlight& flight) {
+        const auto& sortie = flight.phases.sorties.front();
+        return integrated_energy_wh(flight.data.power_w, sortie.start_s(), sortie.end_s());
+    };
+    const double whole_wh = energy_wh(flight_without(battery, 0, 0));
+    for (const auto& [id, from_s, to_s] : {std::tuple{battery, 0, 150}, {position, 0, 150}, {position, 150, 300}}) {
+        const auto flight = flight_without(id, from_s, to_s);
+        ASSERT_EQ(flight.phases.sorties.size(), 1U);
+        EXPECT_NEAR(flight.phases.sorties.front().start_s(), 60.0, 2.0);
+        EXPECT_NEAR(flight.phases.sorties.front().end_s(), 270.0, 2.0);
+        EXPECT_NEAR(energy_wh(flight), whole_wh, 0.02 * whole_wh);
+    }
+}
+
+TEST(MavlinkFamily, CountsByTheBatteryThatBeginsBeforeTheFlight) {
+    const auto flight = flight_without(147, 0, 50);
+    EXPECT_THAT(flight.data.power_w.source, HasSubstr("BATTERY_STATUS"));
+    EXPECT_FALSE(flight.data.charge_ah.empty());
 }
 
 /// A receiver that did not know the week dated a flight to 2019.
