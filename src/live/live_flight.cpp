@@ -90,7 +90,7 @@ class LiveFlight::Impl {
 
   private:
     void store_accepted(bool clock_restarted) {
-        for (const auto& line : accepted_) store_.add(*line.time_s, line.text, line.values);
+        for (const auto& line : accepted_) store_.add(*line.time_s, line.text, line.values, line.packet);
         while (store_.rows() > 2 * options_.max_rows) store_.thin();
         if (!options_.on_lines || accepted_.empty()) return;
         std::string lines;

@@ -167,7 +167,11 @@ class LivePredictor final : public Predictor {
             return push(PredictorInput::mavlink, time_s, [&] {
                 mavlink_->push(bytes, [&](const telemetry::MavlinkMessageOfVehicle& message) {
                     const auto& [sender, name, values, packet, unix_s] = message;
-                    flight_.receive({time_s, fmt::format("{} {}", sender, name), false, {values.begin(), values.end()}},
+                    flight_.receive({time_s,
+                                     fmt::format("{} {}", sender, name),
+                                     false,
+                                     {values.begin(), values.end()},
+                                     std::string(packet)},
                                     time_s);
                 });
             });

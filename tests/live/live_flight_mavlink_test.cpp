@@ -126,6 +126,31 @@ TEST(FlightPackets, HaveTheHeightAboveTheGroundAndNoCurrentAboveTheLimit) {
     EXPECT_THAT(sent["relative_alt"], testing::ElementsAre(0.0, 50'000.0));
 }
 
+/// The sum of two packs, as a monitor of its own, counted next to them: the power was twice as high.
+TEST(LiveFlightByMavlink, CountsMonitorsByTheParametersThatPassBy) {
+    const auto power_w = [](const std::string& first_parameter) {
+        test::MavlinkSender vehicle;
+        std::string log = test::tlog_entry(0.0, vehicle.heartbeat());
+        log += test::tlog_entry(0.0, vehicle.parameter(first_parameter, 10.0F));  // the sum of the others
+        log += test::tlog_entry(0.0, vehicle.parameter("BATT2_MONITOR", 4.0F));
+        log += test::tlog_entry(0.0, vehicle.parameter("BATT3_MONITOR", 4.0F));
+        for (int i = 0; i < 60; ++i) {
+            const auto first_ca = static_cast<std::int16_t>(900 + 17 * (i % 5));
+            const auto second_ca = static_cast<std::int16_t>(1'100 - 13 * (i % 7));
+            const auto sum_ca = static_cast<std::int16_t>(i % 2 == 0 ? 2'100 : 1'900);  // of another moment
+            log += test::tlog_entry(i, vehicle.battery({16'000}, sum_ca, 20 * i, 0));
+            log += test::tlog_entry(i, vehicle.battery({16'000}, first_ca, 9 * i, 1));
+            log += test::tlog_entry(i, vehicle.battery({16'000}, second_ca, 11 * i, 2));
+        }
+        CollectedMessages received;
+        MavlinkReader reader(received, vehicles(), true);
+        reader.push(log);
+        return state_after(received.messages).power_w.value();
+    };
+    EXPECT_GT(power_w("BATT_ANYTHING"), 500.0);
+    EXPECT_NEAR(power_w("BATT_MONITOR"), 16.0 * (9.68 + 10.61), 1e-6);
+}
+
 TEST(LiveFlightByMavlink, FollowsTheVehicleThatItWasTold) {
     test::MavlinkSender other{9, 1};
     CollectedMessages received;

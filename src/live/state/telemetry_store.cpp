@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "flight/telemetry_series.h"
+#include "telemetry/mavlink_decoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,11 +87,24 @@ void TelemetryStore::add_mavlink(double time_s, const std::string& sender, std::
     if (motion_ || !is_of_motion(known->message)) append(sender, row);
 }
 
-void TelemetryStore::add(double time_s, std::string_view message, std::span<const double> values) {
+/// Which monitors measure one pack, its parts or fuel. Those of PX4, whose whole numbers have another form, are not needed.
+void TelemetryStore::add_parameter(const std::string& sender, std::string_view packet) {
+    constexpr std::size_t max_parameters = 500;
+    const auto parameter = telemetry::read_mavlink_packet(packet);
+    if (!parameter || !parameter->text.starts_with("BATT") || std::isnan(parameter->of.at("param_value"))) return;
+    if (parameters_.size() >= max_senders && !parameters_.contains(sender)) return;
+    auto& of_sender = parameters_[sender];
+    if (of_sender.size() < max_parameters || of_sender.contains(parameter->text))
+        of_sender[parameter->text] = parameter->of.at("param_value");
+}
+
+void TelemetryStore::add(double time_s, std::string_view message, std::span<const double> values,
+                         std::string_view packet) {
     const auto sender = take_word(message);
     if (!mavlink_.empty()) {
-        if (!only_ || sender == *only_) add_mavlink(time_s, std::string(sender), message, values);
-        return;
+        if (only_ && sender != *only_) return;
+        if (message == "PARAM_VALUE") return add_parameter(std::string(sender), packet);
+        return add_mavlink(time_s, std::string(sender), message, values);
     }
     const auto* row = decoder_.decode(time_s, message, values);
     if (row != nullptr && (!only_ || sender == *only_)) append(std::string(sender), *row);
@@ -120,6 +134,7 @@ void TelemetryStore::append(const std::string& sender, const telemetry::MessageT
 
 void TelemetryStore::clear() {
     log_.senders.clear();
+    parameters_.clear();
     decoder_.restart();
     thinning_.clear();
 }
@@ -183,7 +198,10 @@ flight::FlightSeries TelemetryStore::series(const std::string& sender) const {
     if (!mavlink_.empty()) {
         const auto log = std::ranges::find(log_.senders, sender, &telemetry::SenderLog::id);
         if (log == log_.senders.end()) return {};
-        auto series = flight::mavlink_series({{log_.data_file, log_.flight, {}, {*log}, {}, {}, 0}, {}, {}});
+        telemetry::LogFacts facts;
+        if (const auto known = parameters_.find(sender); known != parameters_.end()) facts.parameters = known->second;
+        auto series =
+            flight::mavlink_series({{log_.data_file, log_.flight, {}, {*log}, {}, {}, 0}, std::move(facts), {}});
         series.aircraft_id = sender;
         return series;
     }

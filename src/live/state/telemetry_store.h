@@ -28,8 +28,10 @@ class TelemetryStore {
     TelemetryStore(std::string flight, std::optional<telemetry::LogConfiguration> configuration, bool motion = true,
                    bool is_mavlink = false);
 
-    /// Adds a message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields.
-    void add(double time_s, std::string_view message, std::span<const double> values = {});
+    /// Adds a message without its time: "20 ENERGY 57 11.62 1.64", or "20 ENERGY" with `values` of its fields. The
+    /// `packet` of MAVLink's PARAM_VALUE has its parameter.
+    void add(double time_s, std::string_view message, std::span<const double> values = {},
+             std::string_view packet = {});
     void clear();
     void drop_before(double time_s);
     void drop(const std::string& sender);
@@ -59,9 +61,11 @@ class TelemetryStore {
     void append(const std::string& sender, const telemetry::MessageTable& row);
     void add_mavlink(double time_s, const std::string& sender, std::string_view message,
                      std::span<const double> values);
+    void add_parameter(const std::string& sender, std::string_view packet);
 
     telemetry::TelemetryLog log_;
-    std::vector<telemetry::MessageRequest> mavlink_;  ///< the messages, if they are MAVLink's
+    std::vector<telemetry::MessageRequest> mavlink_;                   ///< the messages, if they are MAVLink's
+    std::map<std::string, std::map<std::string, double>> parameters_;  ///< of ArduPilot's battery monitors, by sender
     bool motion_;
     std::optional<std::string> only_;
     telemetry::MessageDecoder decoder_;
