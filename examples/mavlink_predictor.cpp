@@ -7,6 +7,7 @@
 
 #include <fcntl.h>
 #include <flightwatt/predictor.h>
+#include <poll.h>
 #include <unistd.h>
 
 namespace {
@@ -36,12 +37,18 @@ int main(int argc, char** argv) {
         return 3;
     }
     char bytes[4096];
-    double updated_s = now_s();
-    for (ssize_t count = 0; (count = ::read(line, bytes, sizeof bytes)) > 0;) {
-        made.predictor->push_frames(now_s(), {bytes, static_cast<std::size_t>(count)});
+    double heard_s = now_s();
+    double updated_s = heard_s;
+    for (;;) {
+        pollfd waiting{line, POLLIN, 0};
+        const bool has_bytes = ::poll(&waiting, 1, 1000) > 0;  // a line that is silent has its alarm, too
+        const ssize_t count = has_bytes ? ::read(line, bytes, sizeof bytes) : 0;
+        if (has_bytes && count <= 0) break;
+        if (has_bytes) heard_s = now_s();
+        if (has_bytes) made.predictor->push_frames(heard_s, {bytes, static_cast<std::size_t>(count)});
         if (now_s() - updated_s < 1.0) continue;
         updated_s = now_s();
-        print(made.predictor->update());
+        print(made.predictor->update(updated_s - heard_s));
     }
     print(made.predictor->end());
     return 0;
