@@ -311,7 +311,12 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     std::optional<live::Recorder> recorder;
     if (const auto& folder = arguments.record) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-        recorder.emplace(*folder, live::log_name(now), log_text, options.is_mavlink ? ".tlog" : ".data");
+        const auto start = static_cast<std::int64_t>(live::recording_start_unix_s(static_cast<double>(now)));
+        if (start > now)
+            cli::warn(
+                call,
+                "--record: the clock of this computer is not set: the recording has no true date; set it before the flight");
+        recorder.emplace(*folder, live::log_name(start), log_text, options.is_mavlink ? ".tlog" : ".data");
         options.on_lines = [&](std::string_view lines, bool restarts) { recorder->write(lines, restarts); };
     }
     live::LiveFlight flight(std::move(options), watched.basis, make_schedule(watched, arguments.replans));

@@ -5,6 +5,7 @@
 #include "flight/load_flight.h"
 #include "flight/phase_statistics.h"
 #include "flight/select.h"
+#include "live/recorder.h"
 #include "live/state/moment.h"
 #include "live/state/soc_estimation.h"
 #include "live/state/telemetry_store.h"
@@ -131,7 +132,8 @@ class LiveFlight::Impl {
     std::optional<PredictionInput> input_;
     std::unique_ptr<LiveSchedule> schedule_;
     TelemetryStore store_;
-    double begin_unix_s_ = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    double begin_unix_s_ = recording_start_unix_s(
+        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
     static constexpr std::size_t max_senders = 32;            ///< with clocks and counts; further ones share a clock
     std::map<std::string, ClockFilter, std::less<>> clocks_;  ///< of the senders
     std::map<std::string, std::size_t, std::less<>> messages_of_;  ///< the senders

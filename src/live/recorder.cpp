@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -58,6 +59,11 @@ void Recorder::write(std::string_view lines, bool clock_restarted) {
     } catch (const OutputError& error) {
         failure_ = error.what();
     }
+}
+
+double recording_start_unix_s(double now_unix_s) {
+    constexpr double first_unix_s = 978'307'200.0;  // 2001-01-01
+    return std::max(now_unix_s, first_unix_s);
 }
 
 std::string log_name(std::int64_t unix_s) {

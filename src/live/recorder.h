@@ -40,6 +40,10 @@ class Recorder {
     std::string failure_;
 };
 
+/// Returns the Unix time at which a recording begins: now, or 2001 where the clock of the computer is not set, as a .tlog
+/// has no earlier times.
+double recording_start_unix_s(double now_unix_s);
+
 /// Returns Paparazzi's log name for a Unix time, in UTC: "26_11_22__14_05_09".
 std::string log_name(std::int64_t unix_s);
 
