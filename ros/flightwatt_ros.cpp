@@ -46,7 +46,8 @@ class Node {
 
   private:
     void on_battery(const sensor_msgs::BatteryState& battery) {
-        push(battery.header, flightwatt::ros::BatteryReading{battery.voltage, battery.current, battery.charge});
+        push(battery.header,
+             flightwatt::ros::BatteryReading{battery.voltage, battery.current, battery.charge, battery.location});
     }
 
     void on_pose(const geometry_msgs::PoseStamped& pose) {

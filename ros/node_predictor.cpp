@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <utility>
 
 #include <flightwatt/predictor.h>
@@ -85,12 +87,26 @@ class SamplePredictor : public NodePredictor {
   public:
     explicit SamplePredictor(std::unique_ptr<live::Predictor> predictor) : predictor_(std::move(predictor)) {}
 
+    /// A sample comes with each reading of one of the batteries.
     bool push(double time_s, const BatteryReading& battery) override {
-        if (std::isnan(first_charge_ah_)) first_charge_ah_ = battery.charge_ah;
+        constexpr std::size_t max_batteries = 16;
+        if (batteries_.size() == max_batteries && !batteries_.contains(battery.location)) return false;
+        auto& known = batteries_[battery.location];
+        if (std::isnan(known.first_charge_ah)) known.first_charge_ah = battery.charge_ah;
+        known.time_s = time_s;
+        known.current_a = -battery.current_a;
+        known.drawn_ah = known.first_charge_ah - battery.charge_ah;
+        const auto is_silent = [&](const Battery& of) { return !(std::abs(time_s - of.time_s) <= silent_s); };
+        const auto leading = batteries_.find(leading_);
+        if (leading == batteries_.end() || is_silent(leading->second)) leading_ = battery.location;
+        if (battery.location != leading_) return true;
         live::Sample sample;
         sample.voltage_v = battery.voltage_v;
-        sample.current_a = -battery.current_a;
-        sample.charge_ah = first_charge_ah_ - battery.charge_ah;
+        sample.current_a = sample.charge_ah = 0.0;
+        for (const auto& [location, of] : batteries_) {
+            sample.charge_ah += of.drawn_ah;
+            if (!is_silent(of)) sample.current_a += of.current_a;
+        }
         return push(time_s, sample);
     }
 
@@ -114,6 +130,14 @@ class SamplePredictor : public NodePredictor {
     }
 
   private:
+    struct Battery {
+        double time_s = live::Sample::unknown;  ///< of its last reading
+        double current_a = 0.0;                 ///< out of it
+        double first_charge_ah = live::Sample::unknown;
+        double drawn_ah = 0.0;
+    };
+    static constexpr double silent_s = 10.0;  ///< its last current counts no longer
+
     bool push(double time_s, live::Sample& sample) {
         if (!start_s_) start_s_ = time_s;
         latest_s_ = time_s;
@@ -124,7 +148,8 @@ class SamplePredictor : public NodePredictor {
     std::unique_ptr<live::Predictor> predictor_;
     std::optional<double> start_s_;
     double latest_s_ = 0.0;
-    double first_charge_ah_ = live::Sample::unknown;
+    std::map<std::string, Battery> batteries_;  ///< by location
+    std::string leading_;                       ///< the battery whose readings make samples
 };
 
 }  // namespace

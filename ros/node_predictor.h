@@ -17,11 +17,12 @@ struct Settings {
     bool decides = false;
 };
 
-/// What sensor_msgs/BatteryState says; NaN: not known.
+/// What sensor_msgs/BatteryState says; NaN: not known. Of several batteries currents and charges add up.
 struct BatteryReading {
     double voltage_v = 0.0;
-    double current_a = 0.0;  ///< negative: out of the battery
-    double charge_ah = 0.0;  ///< left in it
+    double current_a = 0.0;     ///< negative: out of the battery
+    double charge_ah = 0.0;     ///< left in it
+    std::string location = {};  ///< which one it is: MAVROS states "id0", "id1"
 };
 
 /// What geometry_msgs/PoseStamped says: height, and the attitude of x forward, y left, z up (REP 103).
