@@ -111,15 +111,17 @@ class MissionFromLink {
         if (!waiting_) return;
         const auto sender = message.text.substr(0, message.text.find(' '));
         auto& mission = missions_.try_emplace(sender, identity_.first, identity_.second).first->second;
-        const bool was_outdated = mission.is_outdated();
         if (mission.receive(message)) unread_.insert(sender);
-        if (mission.is_outdated() && !was_outdated)
-            cli::warn(
-                call_,
-                fmt::format("another mission was uploaded to aircraft {}: the prediction is of the former "
-                            "one until the new one is read{}",
-                            sender,
-                            arguments_.requests_mission ? "" : ", by a ground station; --request-mission asks for it"));
+    }
+
+    /// Returns the warning that the prediction is of a former mission; empty: it is not.
+    std::string outdated_warning() const {
+        const auto mission = missions_.find(aircraft_);
+        if (mission == missions_.end() || !mission->second.is_outdated()) return {};
+        return fmt::format(
+            "another mission was uploaded to aircraft {}, or it was cleared: the prediction is of the former "
+            "one until a new one is read{}",
+            aircraft_, arguments_.requests_mission ? "" : ", by a ground station; --request-mission asks for it");
     }
 
     /// Returns the input of predictions of this aircraft, where it changes: by its mission, if that is new.
@@ -313,9 +315,9 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         const auto start = static_cast<std::int64_t>(live::recording_start_unix_s(static_cast<double>(now)));
         if (start > now)
-            cli::warn(
-                call,
-                "--record: the clock of this computer is not set: the recording has no true date; set it before the flight");
+            cli::warn(call,
+                      "--record: the clock of this computer is not set: the recording has no true date; set it "
+                      "before the flight");
         recorder.emplace(*folder, live::log_name(start), log_text, options.is_mavlink ? ".tlog" : ".data");
         options.on_lines = [&](std::string_view lines, bool restarts) { recorder->write(lines, restarts); };
     }
@@ -327,6 +329,8 @@ int watch(const cli::StageCall& call, const WatchArguments& arguments) {
     const auto update_flight = [&](double silent_s) -> std::string {
         auto state = flight.update(silent_s);
         for (const auto& [reason, count] : source->report().unusable) state.unusable[reason] += count;
+        if (auto warning = link_mission.outdated_warning(); !warning.empty())
+            state.warnings.push_back(std::move(warning));
         speaker.print_state(state);
         page.print_state(state);
         announcement.print_state(state);

@@ -14,8 +14,7 @@
 namespace flightwatt::live {
 
 /// Collects the mission of one aircraft from its messages on a link of MAVLink, which pass by while a ground station
-/// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected. Places are
-/// {latitude_deg, longitude_deg, altitude above the sea in m}.
+/// reads it, and asks for it (MAVLink's mission protocol). A mission of more than 10,000 items is not collected.
 class LinkMission {
   public:
     /// Asks as this component of this system.
@@ -26,7 +25,7 @@ class LinkMission {
     /// Returns the packets that ask for what is missing, at most once a second on a clock that does not go back; none
     /// before the aircraft was heard, and once the mission is whole.
     std::vector<std::string> requests(double now_s);
-    /// Returns whether another mission was uploaded since, which is not whole yet.
+    /// Returns whether another mission was uploaded since, which is not whole yet, or it was cleared.
     bool is_outdated() const { return is_outdated_; }
     /// Returns whether its home is known: by the mission, by the aircraft, or as the place where this was disarmed.
     bool has_home() const { return home().has_value(); }
@@ -34,7 +33,7 @@ class LinkMission {
     std::string waypoints() const;
 
   private:
-    using Place = std::array<double, 3>;
+    using Place = std::array<double, 3>;  ///< latitude, longitude, altitude above the sea
     struct Item {
         double frame = 0.0;
         double command = 0.0;
