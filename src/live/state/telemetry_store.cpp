@@ -87,7 +87,7 @@ void TelemetryStore::add_mavlink(double time_s, const std::string& sender, std::
     if (motion_ || !is_of_motion(known->message)) append(sender, row);
 }
 
-/// Which monitors measure one pack, its parts or fuel. Those of PX4, whose whole numbers have another form, are not needed.
+/// Which monitors measure one pack, its parts or fuel; PX4, whose whole numbers have another form, states none.
 void TelemetryStore::add_parameter(const std::string& sender, std::string_view packet) {
     constexpr std::size_t max_parameters = 500;
     const auto parameter = telemetry::read_mavlink_packet(packet);
