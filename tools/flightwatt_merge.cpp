@@ -4,6 +4,7 @@
 #include "batch/batch_files.h"
 #include "batch/batch_fit.h"
 #include "batch/merge.h"
+#include "cli/output/flight_options.h"
 #include "cli/stage.h"
 #include "cli/terminal.h"
 #include "mechanical/validation.h"
@@ -118,6 +119,7 @@ int merge(const cli::StageCall& call, bool prune) {
     progress.hide();
     const auto copies = batch::find_duplicates(flights);
     exclude_duplicates(flights, copies);
+    for (const auto& exclusion : exclude_hover(flights, {})) add_diagnostic(call, cli::diagnostic_of(exclusion));
     const auto count = std::ranges::count_if(copies, &batch::DuplicateFlight::has_power);
     if (count > 0) {
         const auto& [flight, other, has_power] = *std::ranges::find_if(copies, &batch::DuplicateFlight::has_power);

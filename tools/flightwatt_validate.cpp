@@ -43,11 +43,14 @@ std::vector<mechanical::MeasuredFlight> in_the_air(const cli::StageCall& call, c
 std::vector<mechanical::MeasuredFlight> read_flights(const cli::StageCall& call, const cli::FlightArguments& arguments,
                                                      const std::optional<double>& at_s) {
     if (!at_s) return cli::measured_flights(call, arguments);
-    return cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
-        auto measured = mechanical::extract_flights(loaded);
-        cli::add_exclusions(call, arguments, file, measured.exclusions);
-        return in_the_air(call, loaded, std::move(measured), *at_s);
-    });
+    auto flights =
+        cli::from_flights<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
+            auto measured = mechanical::extract_flights(loaded);
+            cli::add_exclusions(call, arguments, file, measured.exclusions);
+            return in_the_air(call, loaded, std::move(measured), *at_s);
+        });
+    cli::exclude_hover(call, arguments, flights);
+    return flights;
 }
 
 struct ValidateArguments {

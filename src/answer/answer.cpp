@@ -215,8 +215,9 @@ std::string mission_toml(const KnownAircraft& aircraft, const Question& question
 Endurance answer_endurance(const KnownAircraft& aircraft, const Question& question) {
     Endurance endurance;
     const auto speed = mean_ground_speed_m_per_s(aircraft.flights);
-    endurance.is_hover = aircraft.model.is_rotorcraft && !question.airspeed_m_per_s &&
-                         (question.wind_m_per_s > 0.0 || (speed && *speed < max_hover_m_per_s));
+    const double on_wing = mission_airspeed_m_per_s(aircraft, question) ? 1.0 : wing_share(aircraft.flights);
+    endurance.is_hover = on_wing == 0.0 || (aircraft.model.is_rotorcraft && !question.airspeed_m_per_s &&
+                                            (question.wind_m_per_s > 0.0 || (speed && *speed < max_hover_m_per_s)));
     const auto basis = power_basis(aircraft, question);
     const auto with_cruise_s = variation_of(aircraft, question);
     const auto setup = setup_of_question(with_cruise_s, aircraft, endurance);
@@ -233,7 +234,6 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
             fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
                         *aircraft.pack.asked_temperature_c));
     if (auto note = other_packs_note(aircraft.flights); !note.empty()) endurance.notes.push_back(std::move(note));
-    const double on_wing = mission_airspeed_m_per_s(aircraft, question) ? 1.0 : wing_share(aircraft.flights);
     if (auto note = hover_note(on_wing); !note.empty()) endurance.notes.push_back(std::move(note));
     const auto& physical = aircraft.model.physical;
     const bool is_mean_speed = !physical || !(physical->mean_airspeed_m_per_s > 0.0);  // with that of the hover

@@ -92,6 +92,12 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
     return facts;
 }
 
+std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts) {
+    const auto only_hovers = [](const FlightFacts& flight) { return flight.wing_s == 0.0 && flight.cruise_s > 0.0; };
+    if (!std::ranges::all_of(facts, only_hovers)) std::erase_if(facts, only_hovers);
+    return facts;
+}
+
 double wing_share(const std::vector<FlightFacts>& facts) {
     double on_wing_s = 0.0;
     double duration_s = 0.0;

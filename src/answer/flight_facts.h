@@ -25,6 +25,9 @@ struct FlightFacts {
 /// Returns the facts of each cruise of a log.
 std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded);
 
+/// Returns the cruises of the fit: without those of a VTOL that only hovers, unless all are (mechanical::exclude_hover).
+std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts);
+
 /// Returns which part of the time of all cruises VTOLs were on their wing; 1 for other aircraft.
 double wing_share(const std::vector<FlightFacts>& facts);
 

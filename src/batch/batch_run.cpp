@@ -303,7 +303,7 @@ BatchFlight without_samples(FlightRecord record, const flight::LoadOptions& opti
     auto measured = select_for_fit(record, options);
     done.selection.flights.reserve(measured.flights.size());
     for (auto& flight : measured.flights) {
-        SelectedSortie sortie{std::move(flight.samples.flight), {}};
+        SelectedSortie sortie{std::move(flight.samples.flight), {}, flight.only_hovers};
         for (const auto phase : flight::all_phases) sortie.phases[phase] = flight.samples.phases[phase].has_value();
         done.selection.flights.push_back(std::move(sortie));
     }
@@ -347,6 +347,10 @@ std::vector<mechanical::MeasuredFlight> read_samples(const BatchFlights& flights
         if (!record) throw InputError({file.string()}, "it changed while it was read", "run flightwatt batch again");
         record->flight = flight.record.flight;  // also of a name that is not UTF-8
         of_logs[i] = select_for_fit(*record, options.load).flights;
+        std::erase_if(of_logs[i], [&](const auto& measured) {
+            return std::ranges::find(flight.selection.flights, measured.samples.flight, &SelectedSortie::flight) ==
+                   flight.selection.flights.end();
+        });
     });
     std::vector<mechanical::MeasuredFlight> measured;
     for (auto& of_log : of_logs) std::ranges::move(of_log, std::back_inserter(measured));
@@ -407,6 +411,36 @@ void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight
                                                    ? duplicate_reason(copy->same_as)
                                                    : fmt::format("it is the same flight as {}", copy->same_as)});
     }
+}
+
+std::vector<mechanical::Exclusion> exclude_hover(BatchFlights& flights, const std::set<std::string>& keep) {
+    const auto hovers = [](const BatchFlight& flight) {
+        return std::ranges::any_of(flight.selection.flights, &SelectedSortie::only_hovers);
+    };
+    const auto is_on_wing = [](const BatchFlight& flight) {
+        return !std::ranges::all_of(flight.selection.flights, &SelectedSortie::only_hovers);
+    };
+    std::vector<mechanical::Exclusion> excluded;
+    if (std::ranges::none_of(flights, hovers)) return excluded;
+    const auto fitted = fitted_aircraft(flights);
+    for (const auto& group : group_aircraft(fitted)) {
+        std::set<std::string> names;
+        for (const auto number : group.flights) names.insert(fitted[number].flight);
+        const auto is_of_group = [&](const BatchFlight& flight) { return names.contains(flight.record.flight); };
+        if (std::ranges::none_of(flights, [&](const auto& of) { return is_of_group(of) && is_on_wing(of); })) continue;
+        for (auto& flight : flights) {
+            if (!is_of_group(flight) || keep.contains(flight.record.flight)) continue;
+            std::erase_if(flight.selection.flights, [&](const auto& sortie) {
+                if (sortie.only_hovers) excluded.push_back({sortie.flight, std::nullopt, mechanical::hover_reason()});
+                return sortie.only_hovers;
+            });
+        }
+    }
+    for (const auto& exclusion : excluded)
+        for (auto& flight : flights)
+            if (exclusion.flight == flight.record.flight || exclusion.flight.starts_with(flight.record.flight + "#"))
+                flight.selection.exclusions.push_back(exclusion);
+    return excluded;
 }
 
 /// A row of flights.csv: a phase, or a rejected log without one.

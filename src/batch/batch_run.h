@@ -19,6 +19,7 @@ namespace flightwatt::batch {
 struct SelectedSortie {
     std::string flight;  ///< see sortie_name
     flight::PerPhase<bool> phases;
+    bool only_hovers = false;  ///< see MeasuredFlight
 };
 
 /// Sorties of a log for a fit; their samples stay in the record (read_samples).
@@ -81,6 +82,10 @@ const std::string* original_of(const std::string& flight, const std::vector<Dupl
 
 /// Excludes duplicates from the fit, with their reason.
 void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight>& copies);
+
+/// Excludes the sorties of a VTOL that only hover where others of the same aircraft are on the wing, but for the flights
+/// in `keep`. Returns them with the reason (mechanical::exclude_hover).
+std::vector<mechanical::Exclusion> exclude_hover(BatchFlights& flights, const std::set<std::string>& keep);
 
 /// Reason for excluding a duplicate.
 std::string duplicate_reason(const std::string& other);

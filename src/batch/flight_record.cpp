@@ -121,11 +121,10 @@ Json json_of(const mechanical::MeasuredFlight& flight, std::size_t sortie) {
         json["energy_wh"] = OptionalNumber::write(flight.energy_wh[phase]);
         json["counter_energy_wh"] = OptionalNumber::write(flight.counter_energy_wh[phase]);
     }
-    return {{"flight", flight.samples.flight},
-            {"sortie", sortie},
-            {"pack_voltage_v", OptionalNumber::write(flight.samples.pack_voltage_v)},
-            {"phases", std::move(phases)},
-            {"motion", record_json(flight.motion)}};
+    return {
+        {"flight", flight.samples.flight},   {"sortie", sortie},
+        {"only_hovers", flight.only_hovers}, {"pack_voltage_v", OptionalNumber::write(flight.samples.pack_voltage_v)},
+        {"phases", std::move(phases)},       {"motion", record_json(flight.motion)}};
 }
 
 Json json_of(const mechanical::MeasuredFlights& measured) {
@@ -142,6 +141,7 @@ void read_measured(const Json& json, mechanical::MeasuredFlights& measured) {
         auto& flight = measured.flights.emplace_back();
         stored.at("flight").get_to(flight.samples.flight);
         JsonType<std::size_t>::read(stored.at("sortie"), measured.sorties.emplace_back());
+        stored.at("only_hovers").get_to(flight.only_hovers);
         OptionalNumber::read(stored.at("pack_voltage_v"), flight.samples.pack_voltage_v);
         for (const auto phase : flight::all_phases) {
             const auto of_phase = stored.at("phases").find(std::string(to_string(phase)));

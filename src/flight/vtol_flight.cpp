@@ -63,9 +63,8 @@ std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {
     if (data.vtol_state.empty() || lifted_s == 0.0) return "";
     if (wing_s == 0.0)
         return fmt::format(
-            "sortie {}: it never flies on its wing: its cruise is hover, and in a fit with flights on the wing the mean "
-            "is of both; --exclude {} leaves it out",
-            sortie.number, data.flight);
+            "sortie {}: it never flies on its wing: its cruise is hover; a fit with flights on the wing leaves it out",
+            sortie.number);
     return fmt::format(
         "sortie {}: {:.0f} of {:.0f} s of the cruise are hover or transitions: its mean power is that of both",
         sortie.number, lifted_s, lifted_s + wing_s);

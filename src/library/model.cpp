@@ -25,6 +25,7 @@ Model fit_model(const std::vector<Log>& logs) {
     std::vector<mechanical::MeasuredFlight> measured;
     for (const auto& log : logs)
         for (auto& flight : mechanical::extract_flights(log.loaded()).flights) measured.push_back(std::move(flight));
+    exclude_hover(measured);
     std::vector<mechanical::FlightSamples> samples;
     samples.reserve(measured.size());
     for (const auto& flight : measured) samples.push_back(flight.samples);

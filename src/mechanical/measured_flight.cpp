@@ -3,6 +3,7 @@
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
 #include "flight/flight_data.h"
+#include "flight/vtol_flight.h"
 
 #include <algorithm>
 #include <utility>
@@ -119,6 +120,8 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
             flight.samples.phases[span.phase] = std::move(samples);
         }
         if (!has_any_phase(flight)) continue;
+        flight.only_hovers =
+            !data.vtol_state.empty() && !wing_flight(data, sortie.start_s(), sortie.end_s()).has_value();
         flight.motion = bin_flight(data, phase_spans(sortie));
         if (!flight.motion.is_rotorcraft && flight.motion.bins.size() < min_bins)
             flight.motion = bin_flight(data, phase_spans(sortie), short_bin_s);
@@ -132,6 +135,20 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
 MeasuredFlights extract_flights(const flight::LoadedFlight& loaded) {
     if (!loaded.exclusion.empty()) return {{}, {{loaded.data.flight, std::nullopt, loaded.exclusion}}, {}};
     return extract_flights(loaded.data, loaded.phases);
+}
+
+std::string hover_reason() { return "it only hovers, and other flights of this aircraft are on the wing"; }
+
+std::vector<Exclusion> exclude_hover(std::vector<MeasuredFlight>& flights, const std::set<std::string>& keep) {
+    std::vector<Exclusion> excluded;
+    if (std::ranges::all_of(flights, &MeasuredFlight::only_hovers)) return excluded;
+    std::erase_if(flights, [&](const auto& flight) {
+        const auto& name = flight.samples.flight;
+        if (!flight.only_hovers || keep.contains(name.substr(0, name.find('#')))) return false;
+        excluded.push_back({name, std::nullopt, hover_reason()});
+        return true;
+    });
+    return excluded;
 }
 
 }  // namespace flightwatt::mechanical

@@ -8,6 +8,7 @@
 #include "mechanical/phase_samples.h"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct PhasePower {
 /// One flight for fit and validation: its samples, and the measured energy of the same phases.
 struct MeasuredFlight {
     FlightSamples samples;
+    bool only_hovers = false;                                   ///< a VTOL that is never on its wing
     flight::PerPhase<std::optional<double>> energy_wh;          ///< integral of the measured power
     flight::PerPhase<std::optional<double>> counter_energy_wh;  ///< by the on-board counter
     std::optional<FlightProgress> flown;                        ///< only for a validation in flight
@@ -61,5 +63,12 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
 
 /// The same of a flight that may be excluded as a whole.
 MeasuredFlights extract_flights(const flight::LoadedFlight& loaded);
+
+/// Returns the reason why a VTOL's flight that only hovers is not fitted with flights on the wing.
+std::string hover_reason();
+
+/// Removes the flights of a VTOL that only hover from those of an aircraft, unless all do: a mean of hover and wing
+/// flight predicts neither. Flights of logs named in `keep` stay. Returns the removed ones with the reason.
+std::vector<Exclusion> exclude_hover(std::vector<MeasuredFlight>& flights, const std::set<std::string>& keep = {});
 
 }  // namespace flightwatt::mechanical

@@ -98,6 +98,13 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         }
         content.flights.push_back(std::move(flight));
     }
+    for (const auto& exclusion : exclude_hover(content.measured, fit.keep)) {
+        const auto name = exclusion.flight.substr(0, exclusion.flight.find('#'));
+        auto& flight = *std::ranges::find(content.flights, name, &ReportFlight::name);
+        flight.exclusions.push_back(to_string(exclusion));
+        const auto is_of_log = [&](const auto& measured) { return measured.samples.flight.starts_with(name + "#"); };
+        if (std::ranges::none_of(content.measured, is_of_log)) flight.unusable_power = exclusion.reason;
+    }
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     for_each_in_parallel(content.flights.size(), [&](std::size_t i) {
         auto& flight = content.flights[i];

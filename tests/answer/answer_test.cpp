@@ -150,7 +150,10 @@ TEST_F(AnswerTest, AVtolMakesNoWayInTheHoverOfItsCruise) {
     EXPECT_THAT(answer_endurance(aircraft, {}).notes,
                 testing::Contains(HasSubstr("10 % of the cruise are hover and transitions")));
     aircraft.flights = {{.flight = "a", .cruise_s = 600.0, .wing_s = 0.0}};
-    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Contains(HasSubstr("never are on the wing")));
+    const auto hover = answer_endurance(aircraft, {});
+    EXPECT_THAT(hover.notes, testing::Contains(HasSubstr("never are on the wing")));
+    EXPECT_TRUE(hover.is_hover);
+    EXPECT_FALSE(hover.distance_m.value) << "100 m, at the 0.04 m/s of its drift";
 }
 
 TEST_F(AnswerTest, NoDistanceOfAHover) {

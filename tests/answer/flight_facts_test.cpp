@@ -59,6 +59,10 @@ TEST(FlightFacts, HaveTheTimeOfAVtolOnItsWing) {
     EXPECT_EQ(flight_facts(loaded).front().wing_s, std::optional(80.0));
     EXPECT_DOUBLE_EQ(wing_share(flight_facts(loaded)), 0.8);
     EXPECT_EQ(wing_share({}), 1.0);
+    const FlightFacts hover{.flight = "h", .cruise_s = 300.0, .wing_s = 0.0};
+    const FlightFacts wing{.flight = "w", .cruise_s = 600.0, .wing_s = 600.0};
+    EXPECT_EQ(wing_share(fitted_facts({hover, wing})), 1.0) << "the fit leaves the hover out";
+    EXPECT_EQ(wing_share(fitted_facts({hover, hover})), 0.0);
 }
 
 TEST(MeanGroundSpeed, WeighsCruisesByTheirDuration) {

@@ -48,6 +48,22 @@ TEST(RepeatedFlights, UsesTheCopyWithItsDefinitions) {
     EXPECT_THAT(copies_of(flights), ElementsAre(DuplicateFlight{"a", "b", true}));
 }
 
+TEST(RepeatedFlights, LeavesHoverOutWhereAnotherFlightOfTheAircraftIsOnTheWing) {
+    const auto folder = test::scratch_dir();
+    for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");
+    auto flights = batch(folder / "in", folder / "out");
+    flights[0].selection.flights.at(0).only_hovers = true;
+    const auto all = flights;
+    EXPECT_THAT(exclude_hover(flights, {"opterra_synthetic_01"}), IsEmpty());
+    ASSERT_EQ(exclude_hover(flights, {}).size(), 1U);
+    EXPECT_THAT(flights[0].selection.flights, IsEmpty());
+    EXPECT_EQ(flights[0].selection.exclusions.back().reason, mechanical::hover_reason());
+    EXPECT_EQ(flights[1].selection.flights.size(), 1U);
+    auto of_others = all;
+    of_others[0].record.aircraft_id = "8";
+    EXPECT_THAT(exclude_hover(of_others, {}), IsEmpty()) << "alone of its aircraft it hovers throughout";
+}
+
 TEST(RepeatedFlights, KnowsThatFlightsAreOfSeveralAircraft) {
     const auto folder = test::scratch_dir();
     for (int number = 1; number <= 2; ++number) copy_sample(number, folder / "in");

@@ -57,6 +57,45 @@ Selection select(const std::vector<flight::Sortie>& sorties) {
     return selection;
 }
 
+/// A VTOL's flights by name, those with an "h" only hover.
+std::vector<MeasuredFlight> vtol_flights(const std::vector<std::string>& names) {
+    std::vector<MeasuredFlight> flights(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        flights[i].samples.flight = names[i];
+        flights[i].only_hovers = names[i].front() == 'h';
+    }
+    return flights;
+}
+
+/// The mean of a hover of 265 W and a wing's cruise of 58 W was answered as 141 W.
+TEST(MeasuredFlights, ThatOnlyHoverAreNotAveragedWithThoseOnTheWing) {
+    auto flights = vtol_flights({"h1", "w1", "h2#2", "h3"});
+    const auto excluded = exclude_hover(flights, {"h3"});
+    ASSERT_EQ(excluded.size(), 2U);
+    EXPECT_EQ(to_string(excluded[1]),
+              "h2#2: it is not used in the fit: it only hovers, and other flights of this aircraft are on the wing");
+    ASSERT_EQ(flights.size(), 2U);
+    EXPECT_EQ(flights[1].samples.flight, "h3") << "--keep names it";
+    auto all_hover = vtol_flights({"h1", "h2"});
+    EXPECT_THAT(exclude_hover(all_hover), IsEmpty());
+    EXPECT_EQ(all_hover.size(), 2U);
+}
+
+TEST(MeasuredFlights, OfAVtolThatIsNeverOnItsWingOnlyHover) {
+    flight::FlightPhases phases;
+    phases.sorties = {whole_sortie(10)};
+    auto data = select_tracks(series_of_300_s());
+    EXPECT_FALSE(extract_flights(data, phases).flights.at(0).only_hovers) << "no VTOL";
+    constexpr auto hover = static_cast<double>(flight::VtolState::hover);
+    constexpr auto wing = static_cast<double>(flight::VtolState::wing);
+    data.vtol_state.time_s = {0.0};
+    data.vtol_state.value = {hover};
+    EXPECT_TRUE(extract_flights(data, phases).flights.at(0).only_hovers);
+    data.vtol_state.time_s = {0.0, 40.0};
+    data.vtol_state.value = {hover, wing};
+    EXPECT_FALSE(extract_flights(data, phases).flights.at(0).only_hovers);
+}
+
 TEST(MeasuredFlights, AreThePowerOfEachPhaseOnItsOwnTime) {
     const auto selection = select({whole_sortie(10)});
     EXPECT_THAT(selection.exclusions, IsEmpty());

@@ -167,6 +167,8 @@ ListedFlights list_flights(const StageCall& call, batch::BatchFlights& flights, 
     ListedFlights listed{find_duplicates(flights), {}};
     exclude_duplicates(flights, listed.copies);
     listed.flown = choose_aircraft(call, options.load.aircraft, flights);
+    for (const auto& exclusion : exclude_hover(flights, options.load.keep))
+        add_diagnostic(call, diagnostic_of(exclusion));
     write_file_atomically(options.out / batch::catalogue_name, catalogue_csv(flights),
                           options.out / batch::temporary_folder);
     return listed;

@@ -295,6 +295,12 @@ void add_exclusions(const StageCall& call, const FlightArguments& arguments, con
     }
 }
 
+void exclude_hover(const StageCall& call, const FlightArguments& arguments,
+                   std::vector<mechanical::MeasuredFlight>& flights) {
+    for (const auto& exclusion : mechanical::exclude_hover(flights, arguments.load.keep))
+        add_diagnostic(call, diagnostic_of(exclusion));
+}
+
 bool is_shown_by_batch(const StageCall& call, const std::string& file) { return !call.notes && is_in_batch(file); }
 
 void note_unused(const StageCall& call, const std::string& file, const flight::LoadedFile& loaded) {
@@ -375,12 +381,14 @@ std::vector<UsedFlights> for_each_flight(const StageCall& call, const FlightArgu
 
 std::vector<FlightsOf<mechanical::MeasuredFlight>> measured_by_aircraft(const StageCall& call,
                                                                         const FlightArguments& arguments) {
-    return from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
+    auto all = from_aircraft<mechanical::MeasuredFlight>(call, arguments, [&](const auto& file, const auto& loaded) {
         auto measured = mechanical::extract_flights(loaded);
         if (!is_shown_by_batch(call, file) && loaded.lacks_power.empty())  // which has a diagnostic of its own
             add_exclusions(call, arguments, file, measured.exclusions);
         return std::move(measured.flights);
     });
+    for (auto& of : all) exclude_hover(call, arguments, of.flights);
+    return all;
 }
 
 std::vector<mechanical::MeasuredFlight> measured_flights(const StageCall& call, const FlightArguments& arguments) {

@@ -118,6 +118,10 @@ void leave_out(const StageCall& call, const FlightArguments& arguments, const st
 void add_exclusions(const StageCall& call, const FlightArguments& arguments, const std::string& file,
                     const std::vector<mechanical::Exclusion>& exclusions);
 
+/// Removes the flights of a VTOL that only hover from those of an aircraft that are on the wing, with a warning each.
+void exclude_hover(const StageCall& call, const FlightArguments& arguments,
+                   std::vector<mechanical::MeasuredFlight>& flights);
+
 /// Whether this is a flight in the folder of a batch, whose diagnostics the batch has shown.
 bool is_shown_by_batch(const StageCall& call, const std::string& file);
 
