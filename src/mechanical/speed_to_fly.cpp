@@ -130,6 +130,19 @@ std::optional<PhysicalModel> speed_model(PhysicalModel model) {
     return is_complete ? std::optional(std::move(model)) : std::nullopt;
 }
 
+PhysicalModel with_cost_of_airspeed(PhysicalModel model) {
+    if (knows_cost_of_airspeed(model) || !model.speed_terms) return model;
+    const auto by_speed = speed_model(model);
+    const auto width = by_speed ? half_width(*by_speed) : std::nullopt;
+    if (!width) return model;
+    TermValues drag;
+    drag[PowerTerm::drag] = 1.0;
+    const bool is_shown =
+        by_speed->coefficients[PowerTerm::drag] > *width * std::sqrt(coefficient_variance_w2(*by_speed, drag)) &&
+        by_speed->coefficients[PowerTerm::induced] >= 0.0;
+    return is_shown ? *by_speed : model;
+}
+
 BestSpeed best_speed(const PhysicalModel& model, const std::string& purpose, const std::string& unit,
                      const CostTerms& cost) {
     const auto slopes = slopes_of(model, cost);

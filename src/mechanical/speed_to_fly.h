@@ -44,6 +44,10 @@ struct SpeedToFly {
 /// The model with its speed terms in place of its own; std::nullopt without drag and induced drag.
 std::optional<PhysicalModel> speed_model(PhysicalModel model);
 
+/// Returns the model with its speed terms in place of its own, where its own have no cost of airspeed and the flights show
+/// one: a drag above 0 by its 95 % interval, with an induced drag of at least 0; else the model as it is.
+PhysicalModel with_cost_of_airspeed(PhysicalModel model);
+
 /// The airspeed of least cost by a speed_model, with Fieller's interval (of a single flight: none).
 BestSpeed best_speed(const PhysicalModel& model, const std::string& purpose, const std::string& unit,
                      const CostTerms& cost);

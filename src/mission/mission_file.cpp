@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "battery/battery_toml.h"
 #include "compute/profile_reader.h"
+#include "mechanical/speed_to_fly.h"
 #include "mission/file/cruise_toml.h"
 #include "mission/file/named_file.h"
 #include "mission/file/payload_toml.h"
@@ -29,9 +30,19 @@ constexpr double min_capacity_ah_of_a_pack = 1e-3;  // below, it is a mistake in
 constexpr double largest_sd_percent = 1000.0;
 constexpr double max_phase_s = 1e7;  // a third of a year: beyond, it is a mistake in the unit
 
-std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root) {
-    if (root.string("mechanical") == "none") return std::nullopt;
-    return mechanical::read_predicting_model(named_file(root, "mechanical"));
+/// Whether the cruise power follows from its airspeed, where the model has a physical part.
+bool states_airspeed(const TomlTable& root) { return root.has("airspeed_m_per_s") || root.has("path"); }
+
+/// The model; at a stated airspeed also with drag that whole flights are predicted no better with.
+void read_mechanical(const TomlTable& root, MissionSetup& mission) {
+    if (root.string("mechanical") == "none") return;
+    auto& model = mission.mechanical.emplace(mechanical::read_predicting_model(named_file(root, "mechanical")));
+    if (!model.physical || knows_cost_of_airspeed(*model.physical) || !states_airspeed(root)) return;
+    model.physical = mechanical::with_cost_of_airspeed(*std::move(model.physical));
+    if (knows_cost_of_airspeed(*model.physical))
+        mission.notes.emplace_back(
+            "its cruise power at an airspeed is by the drag that the flights show within them; the error on flights left "
+            "out is of the model without it, which predicts whole flights no worse");
 }
 
 /// The held-out score of the model that predicts the power (with an airspeed or a path, that of the cruise), if its
@@ -39,7 +50,7 @@ std::optional<mechanical::MechanicalModel> read_mechanical(const TomlTable& root
 void find_power_model(const TomlTable& root, MissionSetup& mission) {
     if (!mission.mechanical) return;
     const auto& physical = mission.mechanical->physical;
-    const bool knows_airspeed = physical && (root.has("airspeed_m_per_s") || root.has("path"));
+    const bool knows_airspeed = physical && states_airspeed(root);
     if (knows_airspeed && !knows_cost_of_airspeed(*physical))
         mission.notes.emplace_back(
             "its cruise power is assumed not to grow with the airspeed: the model's flights do not show what that costs; "
@@ -393,7 +404,7 @@ MissionSetup setup_from(const TomlTable& root, const std::filesystem::path& path
     MissionSetup mission;
     mission.file = path.string();
     mission.name = root.optional_string("name").value_or(path.stem().string());
-    mission.mechanical = read_mechanical(root);
+    read_mechanical(root, mission);
     mission.phase_clock = read_clock(root, mission.mechanical.has_value());
     mission.packs = read_packs(root);
     apply_payload(root, mission);

@@ -58,6 +58,32 @@ TEST(SpeedToFly, HasTheIntervalOfTheDeltaMethodWhereErrorsAreSmall) {
     EXPECT_THAT(describe(best, model.airspeed_m_per_s), testing::Eq("10.0 m/s (95 %: 10.0 to 10.0 m/s), 40 W"));
 }
 
+/// Whole flights of wings at 12 to 20 m/s were predicted no better with drag, and power at any airspeed was a constant:
+/// up to 25 % off, where the speed terms of the same file were 4 % off.
+TEST(SpeedToFly, ItsTermsPredictWhereTheModelsOwnHaveNoCostOfAirspeed) {
+    auto model = known_model();
+    const SpeedTerms known{model.terms, model.coefficients, model.covariance, 4.0};
+    model.terms = {PowerTerm::constant};
+    model.coefficients = {};
+    model.coefficients[PowerTerm::constant] = 60.0;
+    model.covariance = {{1.0}};
+    EXPECT_EQ(with_cost_of_airspeed(model).terms, model.terms) << "no speed terms";
+    model.speed_terms = known;
+    EXPECT_NEAR(power_w(with_cost_of_airspeed(model), {10.0}), 40.0, 1e-9);
+    model.speed_terms->covariance[0][0] = 1.5e-5;  // 0.01 +- 2.78 * 0.0039 by Student's t
+    EXPECT_EQ(power_w(with_cost_of_airspeed(model), {10.0}), 60.0) << "the drag may be 0";
+    model.speed_terms = known;
+    model.speed_terms->coefficients[PowerTerm::induced] = -1.0;
+    EXPECT_EQ(power_w(with_cost_of_airspeed(model), {10.0}), 60.0);
+    model.speed_terms = known;
+    model.level_sd.reset();
+    EXPECT_EQ(power_w(with_cost_of_airspeed(model), {10.0}), 60.0) << "a single flight has no intervals";
+    model = known_model();
+    model.speed_terms = known;
+    model.speed_terms->coefficients[PowerTerm::drag] = 1.0;
+    EXPECT_NEAR(power_w(with_cost_of_airspeed(model), {10.0}), 40.0, 1e-9) << "the model's own terms show it";
+}
+
 TEST(SpeedToFly, MarksWhatIsExtrapolated) {
     auto model = known_model();
     model.airspeed_m_per_s = {12.0, 18.0};

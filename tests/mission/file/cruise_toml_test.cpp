@@ -141,6 +141,18 @@ TEST(AirspeedToml, SaysWhereFlightsDoNotShowWhatAirspeedCosts) {
     const auto notes = scheduled(on_model("constant.toml", "airspeed_m_per_s = 12"), folder / "m.toml").setup.notes;
     EXPECT_THAT(notes, testing::Contains(testing::StartsWith("its cruise power is assumed not to grow")));
     EXPECT_THAT(scheduled(on_model("constant.toml", ""), folder / "m.toml").setup.notes, testing::IsEmpty());
+    const auto drag = mechanical::PowerTerm::drag;
+    const auto induced = mechanical::PowerTerm::induced;
+    mechanical::SpeedTerms shown{{drag, induced}, {}, {{1e-7, 0.0}, {0.0, 1.0}}, 4.0};
+    shown.coefficients[drag] = 0.01;
+    shown.coefficients[induced] = 300.0;
+    model.physical->speed_terms = shown;
+    model.physical->level_sd = 0.05;
+    model.physical->degrees_of_freedom = 4.0;
+    write_text(folder / "speeds.toml", mechanical::to_toml(model));
+    const auto at_12 = scheduled(on_model("speeds.toml", "airspeed_m_per_s = 12"), folder / "m.toml");
+    EXPECT_NEAR(cruise_w(at_12), 0.01 * 1728.0 + 25.0, 1e-9);
+    EXPECT_THAT(at_12.setup.notes, testing::Not(testing::Contains(testing::StartsWith("its cruise power is assumed"))));
 }
 
 /// A folder with a model that knows motion, and one that does not.
