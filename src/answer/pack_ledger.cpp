@@ -261,8 +261,9 @@ Numbers like_uses(const std::vector<PackUse>& uses, const Numbers& numbers) {
     return like;
 }
 
+/// The trend of a value; its change is of the sum with a value that all uses have in common.
 PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
-                   const std::function<std::optional<double>(const PackUse&)>& value_of) {
+                   const std::function<std::optional<double>(const PackUse&)>& value_of, double in_common = 0.0) {
     std::vector<batch::DatedValue> values;
     std::vector<double> days;
     for (const auto i : numbers) {
@@ -283,8 +284,9 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
     for (const auto& [day, value] : values) levels.push_back(value - slope.per_day * (day - middle_day));
     const double level = median(std::move(levels));
     const auto change = [&](double per_day) {
-        const double first = level + per_day * (trend.first_day - middle_day);
-        return units::percentage(per_day * (trend.last_day - trend.first_day), std::max(first, 1e-3 * level));
+        const double first = in_common + level + per_day * (trend.first_day - middle_day);
+        return units::percentage(per_day * (trend.last_day - trend.first_day),
+                                 std::max(first, 1e-3 * (in_common + level)));
     };
     trend.last_value = level + slope.per_day * (trend.last_day - middle_day);
     trend.change_percent = change(slope.per_day);
@@ -292,10 +294,13 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
     return trend;
 }
 
-void add_resistance(const std::vector<PackUse>& uses, Pack& pack) {
+/// All flights have one resistance of the RC pair, so that their own series resistances change by what that changes too:
+/// the change is of the sum. Of the series resistance alone, a rise of both by 58 % was one by 101 %.
+void add_resistance(const std::vector<PackUse>& uses, double rc_resistance_ohm, Pack& pack) {
     constexpr std::size_t last_uses = 5;
     const auto like = like_uses(uses, pack.uses);
-    pack.resistance = trend_of(uses, like, [](const PackUse& use) { return use.found->resistance->value_ohm; });
+    pack.resistance = trend_of(
+        uses, like, [](const PackUse& use) { return use.found->resistance->value_ohm; }, rc_resistance_ohm);
     if (like.empty()) return;
     std::vector<double> ohm;
     const auto temperature_c = temperature_of(uses, pack.uses);
@@ -424,7 +429,8 @@ void Identifier::finish(Pack& pack, const std::optional<battery::BatteryIdentifi
         }
         pack.equivalent_cycles = pack.charge_ah / found->capacity.value_ah;
     }
-    add_resistance(uses, pack);
+    const auto* circuit = found && found->battery.thevenin ? &*found->battery.thevenin : nullptr;
+    add_resistance(uses, circuit != nullptr ? circuit->rc_resistance_ohm : 0.0, pack);
     pack.capacity = trend_of(uses, like_uses(uses, pack.uses), [](const PackUse& use) -> std::optional<double> {
         if (!use.found || !use.found->capacity) return std::nullopt;
         return use.found->capacity->ratio * units::percent_per_whole;

@@ -10,7 +10,8 @@
 namespace flightwatt::answer {
 namespace {
 
-/// Flights with a temperature, by which they are sorted, and a resistance of their own.
+/// Flights with a temperature, by which they are sorted, and a resistance of their own, with that of the RC pair, which
+/// they have in common: their own change by what it changes too.
 struct ComparedFlights {
     std::vector<double> at_c;
     std::vector<double> log_ohm;
@@ -18,15 +19,17 @@ struct ComparedFlights {
 };
 
 ComparedFlights compared_flights(std::vector<battery::IdentifiedFlight> flights,
-                                 std::optional<double> battery::IdentifiedFlight::*temperature_c) {
+                                 std::optional<double> battery::IdentifiedFlight::*temperature_c,
+                                 double rc_resistance_ohm) {
     std::erase_if(flights, [&](const auto& flight) { return !(flight.*temperature_c) || !flight.resistance; });
     std::ranges::sort(flights, {}, temperature_c);
     ComparedFlights compared;
     double squares = 0.0;
     for (const auto& flight : flights) {
         compared.at_c.push_back(*(flight.*temperature_c));
-        compared.log_ohm.push_back(std::log(flight.resistance->value_ohm));
-        squares += std::pow(flight.resistance->standard_error_ohm / flight.resistance->value_ohm, 2);
+        const double ohm = flight.resistance->value_ohm + rc_resistance_ohm;
+        compared.log_ohm.push_back(std::log(ohm));
+        squares += std::pow(flight.resistance->standard_error_ohm / ohm, 2);
     }
     if (!flights.empty()) compared.log_error = std::sqrt(squares / static_cast<double>(flights.size()));
     return compared;
@@ -44,8 +47,8 @@ struct Resistance {
     std::string basis;
 };
 
-/// The straight line through ln R of the flights.
-Resistance on_line(const ComparedFlights& flights, double at_c) {
+/// The straight line through ln R of the flights, of which `series_part` is the series resistance.
+Resistance on_line(const ComparedFlights& flights, double at_c, double series_part) {
     const auto count = static_cast<double>(flights.at_c.size());
     const double mean_c = mean(flights.at_c);
     const double mean_log = mean(flights.log_ohm);
@@ -62,7 +65,7 @@ Resistance on_line(const ComparedFlights& flights, double at_c) {
     const double sd = std::max(std::sqrt(residuals / (count - 2.0)), flights.log_error);
     const double half =
         student_t_half_width(count - 2.0) * sd * std::sqrt(1.0 / count + std::pow(at_c - mean_c, 2) / squares);
-    const double ohm = std::exp(mean_log + slope * (at_c - mean_c));
+    const double ohm = series_part * std::exp(mean_log + slope * (at_c - mean_c));
     return {ohm, {ohm * std::exp(-half), ohm * std::exp(half)}, "measured"};
 }
 
@@ -102,7 +105,9 @@ void set_temperature(FoundPack& pack, double temperature_c, const std::vector<Pa
     }
     const auto of = answer.battery_start_c ? &battery::IdentifiedFlight::battery_start_c
                                            : &battery::IdentifiedFlight::air_temperature_c;
-    const auto flights = compared_flights(pack.identified->flights, of);
+    const double series_ohm = pack.battery.resistance_ohm;
+    const double rc_ohm = pack.battery.thevenin.value().rc_resistance_ohm;
+    const auto flights = compared_flights(pack.identified->flights, of, rc_ohm);
     const bool is_measured = packs.size() < 2 && differ(flights.at_c);
     Resistance found{pack.battery.resistance_ohm, pack.identified->errors.resistance_ohm, "as measured"};
     const double flights_c = flights.at_c.empty() ? 0.5 * (range->low + range->high) : mean(flights.at_c);
@@ -110,7 +115,7 @@ void set_temperature(FoundPack& pack, double temperature_c, const std::vector<Pa
     const bool is_near = std::abs(temperature_c - found_c) <= like_temperature_k;
     if (is_measured) {
         found_c = is_near ? temperature_c : found_c;
-        found = on_line(flights, found_c);
+        found = on_line(flights, found_c, series_ohm / (series_ohm + rc_ohm));
     }
     if (!is_near)
         found = by_law(found, found_c, temperature_c);

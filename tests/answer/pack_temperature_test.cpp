@@ -52,13 +52,17 @@ TEST(SetTemperature, FartherAwayIsAnAssumptionWithAWiderInterval) {
     EXPECT_NEAR(warm.battery.resistance_ohm, 0.08 * std::exp(-0.6), 1e-12);
 }
 
+/// Series resistance and RC pair fall by 4 % a kelvin. As all flights have one RC pair, of 0.05 ohm, their own resistances
+/// fall by what both do.
 TEST(SetTemperature, IsMeasuredWhereFlightsDifferInTemperature) {
     const auto ohm = [](double at_c) { return 0.08 * std::exp(-0.04 * (at_c - 20.0)); };
+    const auto own = [&](double at_c) { return ohm(at_c) * 0.13 / 0.08 - 0.05; };
     const std::vector<std::pair<double, double>> flights{
-        {4.0, ohm(4.0)}, {5.0, ohm(5.0)}, {21.0, ohm(21.0)}, {22.0, ohm(22.0)}};
+        {4.0, own(4.0)}, {5.0, own(5.0)}, {21.0, own(21.0)}, {22.0, own(22.0)}};
     auto pack = flown(flights);
     set_temperature(pack, 0.0, {});
     EXPECT_NEAR(pack.battery.resistance_ohm, ohm(0.0), 1e-9);
+    EXPECT_NEAR(pack.battery.thevenin->rc_resistance_ohm, ohm(0.0) * 0.05 / 0.08, 1e-9);
     EXPECT_LT(pack.answer.resistance_at_interval_ohm->low, ohm(0.0));
     EXPECT_EQ(pack.answer.resistance_at_ohm.basis, "measured at 4 to 22 degC, if on one pack");
     pack = flown(flights);
