@@ -54,6 +54,8 @@ double held_magnitude(const std::vector<double>& values) {
     return held;
 }
 
+bool is_speed(const Track& track) { return track.name == "ground_speed_m_per_s" || track.name == "airspeed_m_per_s"; }
+
 bool is_counter(const Track& track) { return track.name == "charge_ah" || track.name == "energy_wh"; }
 
 /// Decides on one sample between its neighbours.
@@ -212,6 +214,8 @@ ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& c
             "they count as they are",
             units::percentage(part(spikes_s), 1.0), candidate.name, candidate.source));
     }
+    if (is_speed(candidate))  // below 0 by the noise of a sensor
+        for (auto& value : chosen.value) value = std::max(value, 0.0);
     if (!reasons.empty()) {
         chosen.notes.push_back(fmt::format("{} of {} samples of {} ({}) are removed: {}", all - chosen.value.size(),
                                            all, candidate.name, candidate.source, fmt::join(reasons, ", ")));

@@ -26,7 +26,8 @@ Track within_bounds(const Track& track);
 std::size_t erase_times(Track& track, const std::vector<double>& times_s);
 
 /// Returns the candidate without impossible samples, with notes about them: samples beyond the physical bounds, samples
-/// at `contradicted_s` (rising), dropouts by `throttle` (empty if unknown), and spikes. Empty if none is usable.
+/// at `contradicted_s` (rising), dropouts by `throttle` (empty if unknown), and spikes. Speeds below 0 are 0. Empty if
+/// none is usable.
 ChosenTrack remove_outliers(const Track& candidate, const std::vector<double>& contradicted_s = {},
                             const Track& throttle = {});
 

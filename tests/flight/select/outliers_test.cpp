@@ -87,6 +87,17 @@ std::size_t removed(const Track& track, const Track& throttle = {}) {
     return track.value.size() - remove_outliers(track, {}, throttle).value.size();
 }
 
+/// A copter whose ground speed was -0.02 m/s on average in a hover was an internal error.
+TEST(Outliers, AreNotSpeedsBelowZeroWhichAreNone) {
+    for (const auto* name : {"ground_speed_m_per_s", "airspeed_m_per_s"}) {
+        const auto chosen = remove_outliers(track_with(name, -0.02, {{3, 1.5}}));
+        ASSERT_EQ(chosen.value.size(), 100U);
+        EXPECT_EQ(chosen.value[0], 0.0);
+        EXPECT_EQ(chosen.value[3], 1.5);
+    }
+    EXPECT_EQ(remove_outliers(track_with("climb_m_per_s", -0.02, {})).value[0], -0.02);
+}
+
 TEST(Outliers, AreSpikesOfPowerAndCurrent) {
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 66.0}, {51, 66.0}})), 2U) << "three times 20 W, and 5 W";
     EXPECT_EQ(removed(track_with("power_w", 20.0, {{50, 64.5}, {51, 64.5}})), 0U);
