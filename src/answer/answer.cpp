@@ -145,6 +145,20 @@ std::string other_packs_note(const std::vector<FlightFacts>& flights) {
         units::percent_per_whole - least_percent);
 }
 
+/// That flights with different payloads are averaged; empty where none, or all one, is known.
+std::string payloads_note(const std::vector<FlightFacts>& flights) {
+    std::vector<double> stated_kg;
+    for (const auto& flight : flights)
+        if (flight.payload_kg) stated_kg.push_back(*flight.payload_kg);
+    if (stated_kg.empty()) return "";
+    const auto [low, high] = std::ranges::minmax(stated_kg);
+    const auto unstated = flights.size() - stated_kg.size();
+    if (low == high && (unstated == 0 || high == 0.0)) return "";
+    return fmt::format(
+        "the flights carried {:g} to {:g} kg{}: power and time are of their mean; --payload answers for one", low, high,
+        unstated > 0 ? fmt::format(" and {} state no payload", unstated) : "");
+}
+
 /// The mission of the question with a given duration of its cruise.
 mission::MissionVariation variation_of(const KnownAircraft& aircraft, const Question& question) {
     const auto mission_of =
@@ -234,6 +248,8 @@ Endurance answer_endurance(const KnownAircraft& aircraft, const Question& questi
             fmt::format("the capacity is assumed to be unchanged at {:g} degC; a cold pack gives less",
                         *aircraft.pack.asked_temperature_c));
     if (auto note = other_packs_note(aircraft.flights); !note.empty()) endurance.notes.push_back(std::move(note));
+    if (auto note = payloads_note(aircraft.flights); !note.empty() && !question.payload_kg)
+        endurance.notes.push_back(std::move(note));
     if (auto note = hover_note(on_wing); !note.empty()) endurance.notes.push_back(std::move(note));
     const auto& physical = aircraft.model.physical;
     const bool is_mean_speed = !physical || !(physical->mean_airspeed_m_per_s > 0.0);  // with that of the hover

@@ -86,7 +86,7 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
             const double end_s = span.end.time_s;
             facts.push_back({data.flight, end_s - start_s, mean_between(data.ground_speed_m_per_s, start_s, end_s),
                              farthest, data.stated_capacity_ah, mean_between(data.voltage_v, start_s, end_s),
-                             data.monitors, pack_percent, wing_s(data, start_s, end_s)});
+                             data.monitors, pack_percent, wing_s(data, start_s, end_s), first_value(data.payload_kg)});
         }
     }
     return facts;

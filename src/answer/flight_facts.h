@@ -20,6 +20,7 @@ struct FlightFacts {
     std::vector<flight::MonitorShare> monitors = {};  ///< see FlightData
     std::optional<double> pack_percent = {};          ///< of the energy, by the pack; absent with a single circuit
     std::optional<double> wing_s = {};                ///< of the cruise, on the wing; absent for one that is no VTOL
+    std::optional<double> payload_kg = {};            ///< that the log states
 };
 
 /// Returns the facts of each cruise of a log.

@@ -156,6 +156,21 @@ TEST_F(AnswerTest, AVtolMakesNoWayInTheHoverOfItsCruise) {
     EXPECT_FALSE(hover.distance_m.value) << "100 m, at the 0.04 m/s of its drift";
 }
 
+/// The mean power of flights with 0 to 1.2 kg was answered without a word.
+TEST_F(AnswerTest, NamesThePayloadsThatItAverages) {
+    auto aircraft = aircraft_of(100.0, 5.0, 2);
+    const auto averaged = testing::Contains(HasSubstr("power and time are of their mean"));
+    aircraft.flights = {{.flight = "a", .cruise_s = 600.0, .payload_kg = 0.5},
+                        {.flight = "b", .cruise_s = 400.0, .payload_kg = 0.5}};
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Not(averaged));
+    aircraft.flights[1].payload_kg = 0.0;
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, averaged);
+    aircraft.flights[1].payload_kg.reset();
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Contains(HasSubstr("and 1 state no payload")));
+    aircraft.flights[0].payload_kg.reset();
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Not(averaged));
+}
+
 TEST_F(AnswerTest, NoDistanceOfAHover) {
     auto aircraft = aircraft_of(100.0, 5.0);
     aircraft.model.is_rotorcraft = true;

@@ -2,6 +2,7 @@
 
 // payload_kg of a mission: what a payload adds to the power, as the flights show it or by an assumption.
 
+#include "base/statistics.h"
 #include "mechanical/mechanical_model.h"
 
 #include <algorithm>
@@ -125,6 +126,29 @@ void require_plausible_mass(const TomlTable& table, double mass_kg, double paylo
                          "give it in kilograms");
 }
 
+/// Where all flights state different payloads, the powers of their cruises differ above all by these, which a stated payload
+/// leaves nothing of: what remains is at most the physical model's level, with the same 95 % interval, and its error.
+void leave_out_spread_of_payloads(MechanicalModel& model) {
+    const auto& physical = *model.physical;
+    auto& cruise = model.phases[flight::Phase::cruise];
+    const bool differ = physical.payload_kg && physical.payload_kg->high > physical.payload_kg->low;
+    if (!differ || !physical.level_sd || !cruise.level_spread || cruise.level_spread->flights < 2) return;
+    const auto terms = term_values(usual_motion(physical), physical.load);
+    const double power_w = sum_of_terms_w(physical, terms);
+    if (!(power_w > 0.0)) return;
+    const double relative_sd =
+        std::hypot(*physical.level_sd, std::sqrt(coefficient_variance_w2(physical, terms)) / power_w);
+    const double mean_w = mean_power_w(cruise);
+    auto& sd_w = cruise.level_spread->between_flight_sd_w;
+    const double remaining_w = relative_sd * mean_w * student_t_half_width(physical.degrees_of_freedom) /
+                               student_t_half_width(static_cast<double>(cruise.level_spread->flights - 1));
+    if (remaining_w >= sd_w) return;
+    for (auto& flight : model.flights)
+        if (auto& part = flight.phases[flight::Phase::cruise]; part && part->mean_power_w)
+            part->mean_power_w = mean_w + (*part->mean_power_w - mean_w) * remaining_w / sd_w;
+    sd_w = remaining_w;
+}
+
 /// Adds an independent standard deviation to that between flights; both relative to the power.
 void widen(double sd, MechanicalModel& model) {
     for (auto& phase : model.phases.values) {
@@ -158,7 +182,8 @@ void apply_payload(const TomlTable& mission_table, MissionSetup& mission) {
         const double factor = flown_w > 0.0 ? power_w(*model.physical, usual) / flown_w : 1.0;
         if (factor != 1.0)
             mission.payload = {*payload_kg, false, "its power is by the physical model, as the flights show it"};
-        return scale_phases(factor, model);
+        scale_phases(factor, model);
+        return leave_out_spread_of_payloads(model);
     }
     if (mass_kg) require_plausible_mass(mission_table, *mass_kg, *payload_kg, model);
     const auto assumed = assume_payload(*payload_kg, mass_kg, model);
