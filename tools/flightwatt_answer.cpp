@@ -349,7 +349,7 @@ void answer_flights(const cli::StageCall& call, const AnswerArguments& arguments
         inner, arguments.batch.flights, [](const auto&, const auto& loaded) { return answer::flight_facts(loaded); });
     const auto pack = pack_of_folder(inner, arguments, facts, answer.packs);
     const answer::KnownAircraft aircraft{model, folder / batch::model_name, folder / answer::pack_name,
-                                         fitted_facts(facts), pack.answer};
+                                         fitted_facts(facts, arguments.batch.flights.load.keep), pack.answer};
     auto comment = pack.identified ? cli::provenance(*pack.identified) : std::string();
     if (const auto& cold = pack.answer.resistance_at_ohm; cold.value)
         comment += fmt::format("# resistance at {:g} degC: {}\n", *arguments.temperature_c, cold.basis);

@@ -92,9 +92,10 @@ std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded) {
     return facts;
 }
 
-std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts) {
+std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts, const std::set<std::string>& keep) {
     const auto only_hovers = [](const FlightFacts& flight) { return flight.wing_s == 0.0 && flight.cruise_s > 0.0; };
-    if (!std::ranges::all_of(facts, only_hovers)) std::erase_if(facts, only_hovers);
+    if (!std::ranges::all_of(facts, only_hovers))
+        std::erase_if(facts, [&](const auto& flight) { return only_hovers(flight) && !keep.contains(flight.flight); });
     return facts;
 }
 

@@ -3,6 +3,7 @@
 #include "flight/load_flight.h"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct FlightFacts {
 /// Returns the facts of each cruise of a log.
 std::vector<FlightFacts> flight_facts(const flight::LoadedFlight& loaded);
 
-/// Returns the cruises of the fit: without those of a VTOL that only hovers, unless all are (mechanical::exclude_hover).
-std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts);
+/// Returns the cruises of the fit: without those in which a VTOL only hovers, unless all are such, or `keep` names the
+/// flight (mechanical::exclude_hover).
+std::vector<FlightFacts> fitted_facts(std::vector<FlightFacts> facts, const std::set<std::string>& keep = {});
 
 /// Returns which part of the time of all cruises VTOLs were on their wing; 1 for other aircraft.
 double wing_share(const std::vector<FlightFacts>& facts);

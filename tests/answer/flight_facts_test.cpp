@@ -63,6 +63,7 @@ TEST(FlightFacts, HaveTheTimeOfAVtolOnItsWing) {
     const FlightFacts wing{.flight = "w", .cruise_s = 600.0, .wing_s = 600.0};
     EXPECT_EQ(wing_share(fitted_facts({hover, wing})), 1.0) << "the fit leaves the hover out";
     EXPECT_EQ(wing_share(fitted_facts({hover, hover})), 0.0);
+    EXPECT_DOUBLE_EQ(wing_share(fitted_facts({hover, wing}, {"h"})), 600.0 / 900.0);
 }
 
 TEST(MeanGroundSpeed, WeighsCruisesByTheirDuration) {

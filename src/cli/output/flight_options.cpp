@@ -297,7 +297,11 @@ void add_exclusions(const StageCall& call, const FlightArguments& arguments, con
 
 void exclude_hover(const StageCall& call, const FlightArguments& arguments,
                    std::vector<mechanical::MeasuredFlight>& flights) {
-    for (const auto& exclusion : mechanical::exclude_hover(flights, arguments.load.keep))
+    auto keep = arguments.load.keep;
+    for (const auto& input : call.inputs)
+        if (const auto fit = is_of_batch(input) ? batch::read_batch_fit(input) : std::nullopt)
+            keep.insert(fit->keep.begin(), fit->keep.end());
+    for (const auto& exclusion : mechanical::exclude_hover(flights, keep))
         add_diagnostic(call, diagnostic_of(exclusion));
 }
 
