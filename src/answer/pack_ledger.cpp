@@ -294,7 +294,7 @@ PackTrend trend_of(const std::vector<PackUse>& uses, const Numbers& numbers,
     return trend;
 }
 
-/// All flights have one resistance of the RC pair, so that their own series resistances change by what that changes too:
+/// All flights have one resistance of the RC pair, so that their own series resistances change by what it changes too:
 /// the change is of the sum. Of the series resistance alone, a rise of both by 58 % was one by 101 %.
 void add_resistance(const std::vector<PackUse>& uses, double rc_resistance_ohm, Pack& pack) {
     constexpr std::size_t last_uses = 5;

@@ -83,8 +83,8 @@ const std::string* original_of(const std::string& flight, const std::vector<Dupl
 /// Excludes duplicates from the fit, with their reason.
 void exclude_duplicates(BatchFlights& flights, const std::vector<DuplicateFlight>& copies);
 
-/// Excludes the sorties of a VTOL that only hover where others of the same aircraft are on the wing, but for the flights
-/// in `keep`. Returns them with the reason (mechanical::exclude_hover).
+/// Excludes the sorties of a VTOL that only hover where others of the same aircraft are on the wing, but for flights in
+/// `keep`. Returns them with the reason (mechanical::exclude_hover).
 std::vector<mechanical::Exclusion> exclude_hover(BatchFlights& flights, const std::set<std::string>& keep);
 
 /// Reason for excluding a duplicate.
