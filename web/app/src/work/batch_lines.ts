@@ -63,6 +63,12 @@ export function linesOf(
   return [...found, ...silent];
 }
 
+/// Returns lines with the names of their flights in the folder of one aircraft, which counts logs of one name on its own.
+export function namedBy({ flights }: Manifest, lines: LogLine[]): LogLine[] {
+  const names = new Map(flights.map(({ flight, log }) => [log, flight]));
+  return lines.map((line) => ({ ...line, flight: names.get(line.path) ?? line.flight }));
+}
+
 /// Returns the aircraft of a batch that have lines, those with the most first.
 export function aircraftOf(
   { batch, records }: BatchFound,

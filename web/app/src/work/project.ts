@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import type { Engine, RunResult } from "../engine/engine";
 import { naturally } from "../ui/format";
-import { aircraftOf, linesOf, type BatchFound } from "./batch_lines";
+import { aircraftOf, linesOf, namedBy, type BatchFound } from "./batch_lines";
 import { numbers, parseCsv, track, type Csv } from "./csv";
 import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, Known, LogRecord, Manifest, Simulation } from "./documents";
@@ -318,8 +318,11 @@ export class Project {
     const lines = linesOf(found, waiting);
     const questionOf = (id: string) =>
       this.state.aircraft.find((one) => one.id === id)?.question ?? this.settings.questions?.[id] ?? {};
-    const aircraft = aircraftOf(found, lines, questionOf)
-      .map((one) => ({ ...one, own_capacity_ah: this.settings.capacities_ah?.[one.id] }));
+    const aircraft = await Promise.all(aircraftOf(found, lines, questionOf).map(async (one) => ({
+      ...one,
+      logs: await this.named(one),
+      own_capacity_ah: this.settings.capacities_ah?.[one.id],
+    })));
     const unused = lines.filter(({ line }) => line.state === "not").map(({ line }) => line);
     this.set({ unused, aircraft });
     if (aircraft.some((one) => one.id === this.state.chosen)) return;
@@ -327,14 +330,20 @@ export class Project {
     this.set({ chosen: (kept ?? aircraft[0])?.id ?? "" });
   }
 
+  /// Returns the logs of an aircraft with the names of their flights in its folder as it is now.
+  private async named({ folder, logs }: Aircraft): Promise<LogLine[]> {
+    return namedBy(await this.json<Manifest>(`${folder}/batch.json`), logs);
+  }
+
   private async readTrends(id: string) {
     const aircraft = this.state.aircraft.find((one) => one.id === id);
     if (!aircraft) return;
+    const logs = await this.named(aircraft);
     const result = await this.engine.run(["trends", aircraft.folder, "--json", "--quiet"]);
     const flights = result.out ? (JSON.parse(result.out) as { flights: FlownFlight[] }).flights : [];
     const by_name = new Map(flights.map((flight) => [flight.flight, flight]));
-    this.setAircraft(id, { logs: aircraft.logs.map((line) => ({ ...line, flown: by_name.get(line.flight) })) });
-    for (const line of aircraft.logs) this.queue.addNext(() => this.readPower(id, line));
+    this.setAircraft(id, { logs: logs.map((line) => ({ ...line, flown: by_name.get(line.flight) })) });
+    for (const line of logs) this.queue.addNext(() => this.readPower(id, line));
   }
 
   private async readPower(id: string, line: LogLine) {
