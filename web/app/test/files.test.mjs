@@ -26,10 +26,56 @@ test("a long name keeps its ending", () => {
   assert.ok([...name].length <= 100 && name.endsWith(".data.gz"));
 });
 
-test("the same name twice has a folder of its own", () => {
-  const taken = new Set(["a.bin", "2/a.bin"]);
-  assert.equal(files.freePath("a.bin", (path) => taken.has(path)), "3/a.bin");
-  assert.equal(files.freePath("b.bin", (path) => taken.has(path)), "b.bin");
+test("the same name twice has a folder of its own, and a log that grew the place of its beginning", async () => {
+  const known = new Map([["a.bin", new Blob(["first"])], ["2/a.bin", new Blob(["second"])]]);
+  const placeOf = (path, text) => files.placeOfLog(path, new Blob([text]), (one) => known.get(one));
+  assert.deepEqual(await placeOf("b.bin", "first"), { place: "b.bin", is_new: true });
+  assert.deepEqual(await placeOf("a.bin", "third"), { place: "3/a.bin", is_new: true });
+  assert.deepEqual(await placeOf("a.bin", "second"), { place: "2/a.bin", is_new: false });
+  assert.deepEqual(await placeOf("a.bin", "first and more"), { place: "a.bin", is_new: true });
+  assert.deepEqual(await placeOf("a.bin", "fir"), { place: "a.bin", is_new: false });
+});
+
+/// A project whose engine keeps the names of what is written.
+function projectOf() {
+  const written = [];
+  const engine = { write: async (name) => written.push(name), run: async () => ({ code: 1, out: "", err: "" }), cancel() {} };
+  return { project: new Project(engine), written };
+}
+
+test("definitions go with their log, also where another log has its name", async () => {
+  const { project, written } = projectOf();
+  const drop = (data, log) => project.add([
+    { path: "a.log", file: new File([log], "a.log", { lastModified: 1 }) },
+    { path: "a.data", file: new File([data], "a.data", { lastModified: data.length }) },
+  ]);
+  await drop("one", "x");
+  await drop("one and more", "x");
+  await drop("another", "y");
+  assert.deepEqual(written, ["logs/a.data", "logs/a.log", "logs/a.data", "logs/2/a.data", "logs/2/a.log"]);
+});
+
+test("logs that come with a mission are read, and what the mission names stays beside it", async () => {
+  const { project, written } = projectOf();
+  const files_of = (...names) => names.map((name) => ({ path: `my/${name}`, file: new File(['mechanical = "model.toml"'], name) }));
+  await project.add(files_of("mission.toml", "flights/1.bin", "profile.csv", "field.kml"));
+  assert.deepEqual(written, ["missions/my/mission.toml", "logs/my/flights/1.bin", "missions/my/profile.csv", "missions/my/field.kml"]);
+});
+
+test("plans of one name in two folders are two plans, and one that is known is shown again", async () => {
+  const { project } = projectOf();
+  const plan = (folder) => ({ path: `${folder}/field.kml`, file: new File([folder], "field.kml", { lastModified: 1 }) });
+  await project.add([plan("north"), plan("south")]);
+  assert.deepEqual(project.state.plans, ["plans/north/field.kml", "plans/south/field.kml"]);
+  assert.deepEqual(await project.add([plan("north")]), ["plans/north/field.kml"]);
+  assert.equal(project.state.dropped.plan, "plans/north/field.kml");
+});
+
+test("a model is no map of columns, and is said not to be used", async () => {
+  const { project, written } = projectOf();
+  await project.add([{ path: "model.toml", file: new File(["name = \"fitted\"\n[cruise]\n"], "model.toml") }]);
+  assert.deepEqual(written, []);
+  assert.match(project.state.failed, /^Not used: model\.toml: neither a mission/);
 });
 
 test("a .log beside its .data has definitions; alone it is a log", () => {
@@ -89,7 +135,7 @@ test("a command of many logs names the one of several aircraft, and every comman
 
 test("logs that are read with a map of columns are answered with it", async () => {
   const project = new Project({ write: async () => {}, run: async () => ({ code: 1, out: "", err: "" }), cancel() {} });
-  const dropped = ["a.csv", "map.toml"].map((name) => ({ path: name, file: new File(["x"], name) }));
+  const dropped = ["a.csv", "map.toml"].map((name) => ({ path: name, file: new File(["[time]\ncolumn = \"t\"\n"], name) }));
   await project.add(dropped);
   const log = { path: "logs/a.csv" };
   const text = project.answerArguments({ logs: [log], folder: "out" }, {}).join(" ");

@@ -24,11 +24,39 @@ export function safePath(path: string): string {
   return parts.slice(-6).join("/") || "unnamed";
 }
 
-/// Returns that path, or where it is taken one in a folder of its own: "2/flight.bin".
-export function freePath(path: string, taken: (path: string) => boolean): string {
-  for (let i = 1; ; i += 1) {
-    const free = i === 1 ? path : `${i}/${path}`;
-    if (!taken(free)) return free;
+/// Returns the path of the n-th file of a path: from the second on in a folder of its own, "2/flight.bin".
+export const numbered = (path: string, n: number) => (n === 1 ? path : `${n}/${path}`);
+
+const part_bytes = 1 << 22;
+
+/// Returns whether a file begins with all that another has; not where one of them cannot be read.
+export async function beginsWith(file: Blob, begin: Blob): Promise<boolean> {
+  if (file.size < begin.size) return false;
+  try {
+    for (let at = 0; at < begin.size; at += part_bytes) {
+      const to = Math.min(at + part_bytes, begin.size);
+      const [one, other] = await Promise.all([file, begin].map(async (of) => new Uint8Array(await of.slice(at, to).arrayBuffer())));
+      if (!one?.every((byte, i) => byte === other?.[i])) return false;
+    }
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/// Returns the place of a log that comes under a path: its own where it is known, also in part (a log that grew), else
+/// the first that is free; `is_new`: whether it is to be written there.
+export async function placeOfLog(
+  path: string,
+  file: Blob,
+  known: (path: string) => Blob | undefined,
+): Promise<{ place: string; is_new: boolean }> {
+  for (let n = 1; ; n += 1) {
+    const place = numbered(path, n);
+    const old = known(place);
+    if (!old) return { place, is_new: true };
+    if (await beginsWith(old, file)) return { place, is_new: false };
+    if (await beginsWith(file, old)) return { place, is_new: true };
   }
 }
 
@@ -48,6 +76,17 @@ export function kindOf(path: string, names: Set<string>): Kind {
   const has_data = [".data", ".data.gz", ".DATA"].some((ending) => names.has(stem + ending));
   return /\.log$/i.test(name) && has_data ? "definitions" : "log";
 }
+
+const ending_of_log = /\.(bin|ulg|tlog|data|log)(\.(gz|bz2|xz|zst))?$/i;
+
+/// Returns what a file is for that came with a mission, which names its files: they stay beside it, but for logs.
+export function kindBesideMission(path: string, kind: Kind): Kind | "mission" {
+  const is_for_logs = kind === "ignored" || kind === "packs" || kind === "definitions" || ending_of_log.test(path);
+  return is_for_logs ? kind : "mission";
+}
+
+/// Returns the part of a name that a log of Paparazzi and its definitions share.
+export const stemOf = (path: string) => path.replace(/\.(log|data(\.gz)?)$/i, "");
 
 /// Returns the name of a tile of heights as the program looks for it: "N47E008.hgt".
 export function tileName(path: string): string {

@@ -6,7 +6,7 @@ import { aircraftOf, linesOf, namedBy, type BatchFound } from "./batch_lines";
 import { numbers, parseCsv, track, type Csv } from "./csv";
 import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, Known, LogRecord, Manifest, Simulation } from "./documents";
-import { freePath, kindOf, safePath, tileName, type Dropped } from "./files";
+import { kindBesideMission, kindOf, placeOfLog, safePath, stemOf, tileName, type Dropped, type Kind } from "./files";
 import * as storage from "./keep";
 import { rest_ms } from "./latest";
 import { inputsShown, isByFolder, optionsOf, type Question } from "./question";
@@ -158,35 +158,61 @@ export class Project {
     const stored = new Map<string, Blob>();
     const missions = await missionsAmong(dropped);
     const incoming = new Set(dropped.map((one) => safePath(one.path)));
-    for (const { path, file } of dropped) {
+    const files = dropped.map(({ path, file }) => {
       const safe = safePath(path);
-      // A mission names its files, which stay beside it.
-      const kind = missions.size > 0 ? "mission" : kindOf(safe, incoming);
+      const kind = kindOf(safe, incoming);
+      return { safe, file, kind: missions.size > 0 ? kindBesideMission(safe, kind) : kind };
+    });
+    // Definitions go where their log went.
+    files.sort((a, b) => Number(a.kind === "definitions") - Number(b.kind === "definitions"));
+    const placed = new Map<string, string>();
+    const places: string[] = [];
+    const refused: string[] = [];
+    for (const { safe, file, kind } of files) {
       if (kind === "ignored") continue;
-      const wanted = kind === "mission"
-        ? `${missions_folder}/${safe}`
-        : kind === "plan"
-          ? `${plans_folder}/${names(safe)}`
-          : kind === "terrain" ? `${terrain_folder}/${tileName(safe)}` : `${logs_folder}/${safe}`;
-      if (this.isSame(wanted, file)) continue;
-      const folder = wanted.slice(0, wanted.indexOf("/") + 1);
-      const place = kind === "plan" || kind === "mission" || kind === "terrain"
-        ? wanted
-        : folder + freePath(wanted.slice(folder.length), (one) => this.files.has(folder + one));
+      if (kind === "columns" && !(await isMapOfColumns(file))) {
+        refused.push(safe);
+        continue;
+      }
+      const { place, is_new } = await this.placeOf(safe, file, kind, placed);
+      places.push(place);
+      if (!is_new) continue;
       await this.engine.write(place, file);
       this.files.set(place, file);
       stored.set(place, file);
     }
     const among = (...folders: string[]) =>
-      [...stored.keys()].filter((path) => folders.some((folder) => path.startsWith(`${folder}/`)));
+      places.filter((path) => folders.some((folder) => path.startsWith(`${folder}/`)));
     const plans = among(plans_folder, missions_folder);
     const known = await this.plans();
     const latest = plans.length > 0 ? { plan: plans.find((path) => known.includes(path)) } : this.state.dropped;
-    this.set({ failed: "", plans: known, dropped: latest, tiles: this.pathsOf(terrain_folder).length });
-    if (among(logs_folder).length > 0) this.queue.add(() => this.readLogs(), true);
+    const failed = refused.length > 0
+      ? `Not used: ${refused.join(", ")}: neither a mission (with the key mechanical) nor a map of the columns of tables (with the key time)`
+      : "";
+    this.set({ failed, plans: known, dropped: latest, tiles: this.pathsOf(terrain_folder).length });
+    if ([...stored.keys()].some((path) => path.startsWith(`${logs_folder}/`))) this.queue.add(() => this.readLogs(), true);
     storage.keep(stored)
       .catch(() => this.set({ failed: "This browser keeps nothing: the logs are here until the page is closed." }));
     return plans;
+  }
+
+  /// Returns where a file is kept, and whether it is not there yet; `placed` has the folders of logs by their stems.
+  private async placeOf(
+    safe: string,
+    file: File,
+    kind: Kind | "mission",
+    placed: Map<string, string>,
+  ): Promise<{ place: string; is_new: boolean }> {
+    const folders: Partial<Record<Kind | "mission", string>> = { mission: missions_folder, plan: plans_folder };
+    const folder = folders[kind] ?? logs_folder;
+    if (kind === "log" && !this.isSame(`${folder}/${safe}`, file)) {
+      const { place, is_new } = await placeOfLog(safe, file, (one) => this.files.get(`${folder}/${one}`));
+      placed.set(stemOf(safe), place.slice(0, -safe.length));
+      return { place: `${folder}/${place}`, is_new };
+    }
+    const beside = kind === "definitions" ? placed.get(stemOf(safe)) ?? "" : "";
+    const place = kind === "terrain" ? `${terrain_folder}/${tileName(safe)}` : `${folder}/${beside}${safe}`;
+    return { place, is_new: !this.isSame(place, file) };
   }
 
   private isSame(path: string, file: File): boolean {
@@ -213,6 +239,7 @@ export class Project {
 
   /// Reads the logs whose reading was cancelled.
   readAgain() {
+    this.set({ failed: "" });
     this.queue.add(() => this.readLogs(), true);
   }
 
@@ -273,7 +300,7 @@ export class Project {
       reason: "",
       flight: "",
     }));
-    this.set({ waiting, progress: { text: "Reading", done: 0, of: paths.length }, busy: true, failed: "" });
+    this.set({ waiting, progress: { text: "Reading", done: 0, of: paths.length }, busy: true });
     const result = await this.engine.run(this.batchArguments(), (line) => {
       const found = /\[(\d+)\/(\d+)\] (.*)$/.exec(line);
       if (found) this.set({ progress: { text: `Reading ${found[3]}`, done: Number(found[1]), of: Number(found[2]) } });
@@ -594,6 +621,11 @@ async function missionsAmong(files: Dropped[]): Promise<Set<string>> {
   for (const { path, file } of files)
     if (/\.toml$/i.test(path) && /^\s*mechanical\s*=/m.test(await file.slice(0, 20_000).text())) found.add(path);
   return found;
+}
+
+/// Returns whether a file maps the columns of tables, which has their clock; models and packs of the program have none.
+async function isMapOfColumns(file: File): Promise<boolean> {
+  return /^\s*(\[\s*time\s*\]|time(\.\w+)?\s*=)/m.test(await file.slice(0, 20_000).text());
 }
 
 /// Returns what "as measured" asks: no capacity where the logs state one; else that of now, which its user alone knows.
