@@ -144,6 +144,14 @@ test("logs that are read with a map of columns are answered with it", async () =
   assert.equal(project.inputsShown([log]), "a.csv --columns map.toml");
 });
 
+test("a saved mission names the files that the command of the screen writes and reads", () => {
+  const mission = 'mechanical = "out/7/model.toml"\nbattery = "out/7/answer-pack.toml"\narea = "plans/north/field.kml"\n';
+  assert.equal(
+    flown.missionShown(mission, "out/7", "flightwatt-out"),
+    'mechanical = "flightwatt-out/model.toml"\nbattery = "flightwatt-out/answer-pack.toml"\narea = "north/field.kml"\n',
+  );
+});
+
 test("the commands of a plan work one after the other in an empty folder", () => {
   const options = { plan: "plans/field.geojson", blocks: [], packs: 1 };
   assert.equal(

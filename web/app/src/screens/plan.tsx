@@ -9,7 +9,7 @@ import { Plot } from "../ui/plot";
 import { Slider } from "../ui/slider";
 import { track } from "../work/csv";
 import type { PlanBlock, PlanRemedy, Simulation } from "../work/documents";
-import { blocksOf, flyPlan, isAboveTerrain, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
+import { blocksOf, flyPlan, isAboveTerrain, missionShown, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
 import { useLatest } from "../work/latest";
 import { inPageWords } from "../work/question";
 import { areaFile, shapeOf, type PlanShape } from "../work/plan_shapes";
@@ -18,6 +18,8 @@ import { ChargePlot, NoLogs } from "./answer";
 import { FilesButton, takeFiles } from "./logs";
 
 const fileName = (path: string) => path.split("/").pop() ?? path;
+/// With the folder that it came from.
+const planName = (path: string) => path.replace(/^(plans|missions)\//, "");
 const no_plan: PlanOptions = { plan: "FILE", blocks: [], packs: 1 };
 const drawn_area = "plans/drawn area.geojson";
 
@@ -383,6 +385,7 @@ function SaveButtons({ project, aircraft, answered, flown }: {
   const [said, setSaid] = useState<{ of: FlownPlan; failed: string; remarks: string[] } | null>(null);
   const say = (failed: string, remarks: string[] = []) => setSaid({ of: flown, failed, remarks });
   const name = fileName(flown.options.plan).replace(/\.\w+$/, "");
+  const mission = is_mission ? flown.mission : missionShown(flown.mission, aircraft.folder, project.folderShown(aircraft));
   const savePlan = async () => {
     if (!answered) return;
     const planned = await planFiles(project, aircraft, answered, flown.options, format);
@@ -404,7 +407,7 @@ function SaveButtons({ project, aircraft, answered, flown }: {
     <>
       <h2 class="section">Save</h2>
       <p class="buttons">
-        <button type="button" class="quiet" onClick={() => save(`${name}-mission.toml`, flown.mission, "text/plain")}>
+        <button type="button" class="quiet" onClick={() => save(`${name}-mission.toml`, mission, "text/plain")}>
           <Icon name="save" /> Mission
         </button>
         <button
@@ -565,7 +568,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
         {drawing
           ? "Click the corners of the area"
           : options
-            ? (failed ? `${fileName(options.plan)}: not flown` : `${fileName(options.plan)}: computing`)
+            ? (failed ? `${planName(options.plan)}: not flown` : `${planName(options.plan)}: computing`)
             : "Does a plan fit?"}
       </h1>}
       {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
@@ -575,7 +578,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
           {!options && !drawing ? (
             <NoPlan project={project} onDraw={() => setDrawing([])} />
           ) : (
-            <Card title={drawing ? "Draw an area" : fileName(options?.plan ?? "")} aside={
+            <Card title={drawing ? "Draw an area" : planName(options?.plan ?? "")} aside={
               drawing ? (
                 <span class="buttons">
                   <button
@@ -600,7 +603,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
                       value={options?.plan}
                       onChange={(event) => void open(event.currentTarget.value)}
                     >
-                      {state.plans.map((one) => <option value={one}>{fileName(one)}</option>)}
+                      {state.plans.map((one) => <option value={one}>{planName(one)}</option>)}
                     </select>
                   )}
                   <FilesButton label="Open" onFiles={(files) => void takeFiles(project, files)} />

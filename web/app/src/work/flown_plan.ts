@@ -73,6 +73,11 @@ export function planCommand(inputs: string, folder: string, options: PlanOptions
   return `${answer.join(" ")} && flightwatt ${args.map(quoted).join(" ")} -o plan.toml && flightwatt simulate plan.toml${samples}${chances}`;
 }
 
+/// Returns a mission of a plan with its files as the command has them: its results are in `shown`, this page's in `folder`.
+export function missionShown(mission: string, folder: string, shown: string): string {
+  return mission.replaceAll(`"${folder}/`, `"${shown}/`).replaceAll('"plans/', '"');
+}
+
 /// Of a plan, for its chance.
 const drawn_flights = 1000;
 
