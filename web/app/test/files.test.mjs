@@ -122,6 +122,11 @@ test("a question is the options of the program, and nothing is asked by nothing"
   assert.deepEqual(question.optionsOf({ mass_kg: 3.4 }), []);
 });
 
+test("what the program asks for by an option that the page has not is said in other words", () => {
+  const text = question.inPageWords("several aircraft flew: 1, 2; select one with --aircraft ID");
+  assert.match(text, /^several aircraft flew: 1, 2; this page reads one aircraft of a log/);
+});
+
 test("a shell takes the names of logs as they are", () => {
   assert.equal(question.inputsShown(["logs/a b.bin", "logs/-rf", "logs/it's"]), `'a b.bin' ./-rf 'it'\\''s'`);
 });

@@ -34,6 +34,8 @@ test("a chance is never none and never all", () => {
   assert.equal(chance(0), "under 1 of 100");
   assert.equal(chance(1), "over 99 of 100");
   assert.equal(chance(0.953), "95 of 100");
+  assert.equal(chance(0.9496), "94 of 100", "below what is wanted");
+  assert.equal(chance(1 - 0.05), "95 of 100");
 });
 
 test("kilometres from 1000 m on; dates in words; names in natural order", () => {

@@ -5,6 +5,7 @@ import { date, duration, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
 import { filesOfInput, type Dropped } from "../work/files";
 import type { Aircraft, LogLine, Project, State } from "../work/project";
+import { inPageWords } from "../work/question";
 
 const states = {
   waiting: { grade: "none", word: "Waiting" },
@@ -67,7 +68,7 @@ function Line({ line }: { line: LogLine }) {
         <span>{line.flown ? duration(line.flown.in_air_s) : ""}</span>
         <span>{line.flown ? quantity(line.flown.energy_wh, 1, "Wh") : ""}</span>
       </span>
-      <span class="log-reason">{line.reason}</span>
+      <span class="log-reason">{inPageWords(line.reason)}</span>
     </li>
   );
 }
@@ -99,12 +100,15 @@ function PackField({ aircraft, project }: { aircraft: Aircraft; project: Project
   const stated = aircraft.question.capacity_ah;
   const value = stated ?? capacity?.value;
   const is_measured = stated != null || (capacity?.value != null && !/estimate|assumed/.test(capacity.basis));
-  const change = (text: string) => {
-    const ah = Number(text.replace(",", "."));
-    if (text.trim() === "") project.ask(aircraft.id, { ...aircraft.question, capacity_ah: undefined });
-    else if (ah > 0 && ah <= 200) project.ask(aircraft.id, { ...aircraft.question, capacity_ah: ah });
+  const shown = value != null ? String(Math.round(value * 100) / 100) : "";
+  const change = (field: HTMLInputElement) => {
+    const ah = Number(field.value.replace(",", "."));
+    if (field.value.trim() === "") project.ask(aircraft.id, { ...aircraft.question, capacity_ah: undefined });
+    else if (ah > 0) project.ask(aircraft.id, { ...aircraft.question, capacity_ah: ah });
+    else field.value = shown;
   };
-  const basis = stated != null
+  const failed = aircraft.failed && inPageWords(aircraft.failed);
+  const basis = failed ? failed : stated != null
     ? "as you stated it"
     : capacity?.value != null ? capacity.basis : capacity ? "not in the logs: what does its label say?" : "";
   return (
@@ -115,15 +119,15 @@ function PackField({ aircraft, project }: { aircraft: Aircraft; project: Project
           type="text"
           inputMode="decimal"
           size={4}
-          value={value != null ? String(Math.round(value * 100) / 100) : ""}
+          value={shown}
           aria-label={`Capacity of the pack of ${aircraft.name} in Ah`}
-          onChange={(event) => change(event.currentTarget.value)}
+          onChange={(event) => change(event.currentTarget)}
         />
         <span class="soft">Ah</span>
       </label>
       {basis && (
         <span class="pack-basis">
-          <Mark grade={value != null && is_measured ? "good" : "doubt"} /> {basis}
+          <Mark grade={failed ? "bad" : value != null && is_measured ? "good" : "doubt"} /> {basis}
         </span>
       )}
     </div>

@@ -34,7 +34,9 @@ export function chance(probability: number | null | undefined): string {
   if (probability == null || !Number.isFinite(probability)) return "unknown";
   if (probability < 0.01) return "under 1 of 100";
   if (probability > 0.99) return "over 99 of 100";
-  return `${Math.round(100 * probability)} of 100`;
+  // What is wanted is 95 of 100: less does not read as that.
+  const of_100 = probability < 0.95 ? Math.min(94, Math.round(100 * probability)) : Math.round(100 * probability);
+  return `${of_100} of 100`;
 }
 
 /// Returns the date of "2020-07-03T12:17:45Z" as "3 July 2020", with the time of day if there is one.
