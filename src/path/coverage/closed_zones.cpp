@@ -50,12 +50,16 @@ ClosedZones::ClosedZones(std::vector<Polygon> zones, double distance_m)
 }
 
 std::vector<LinePart> ClosedZones::parts_of_line(double course_deg, double offset_m) const {
+    return parts_of_line(course_deg, offset_m, distance_m_);
+}
+
+std::vector<LinePart> ClosedZones::parts_of_line(double course_deg, double offset_m, double distance_m) const {
     std::vector<LinePart> parts;
     const auto axes = axes_of(course_deg);
     for (const auto& zone : zones_) {
         for (const auto& part : parts_within(zone, course_deg, offset_m)) parts.push_back(part);
-        for (std::size_t i = 0; i < zone.size() && distance_m_ > 0.0; ++i)
-            add_parts_beside(zone[i], zone[(i + 1) % zone.size()], distance_m_, course_deg, axes, offset_m, parts);
+        for (std::size_t i = 0; i < zone.size() && distance_m > 0.0; ++i)
+            add_parts_beside(zone[i], zone[(i + 1) % zone.size()], distance_m, course_deg, axes, offset_m, parts);
     }
     return parts;
 }
@@ -64,7 +68,9 @@ bool ClosedZones::are_crossed(const LocalPosition& from, const LocalPosition& to
     const double course_deg = course_between(from, to);
     const auto start = along_and_across(from, course_deg);
     const double end_m = start.along_m + distance_between_m(from, to);
-    return std::ranges::any_of(parts_of_line(course_deg, start.across_m), [&](const LinePart& part) {
+    // Places at the distance, as the ends of lines, have a way along it, whatever is rounded.
+    const auto parts = parts_of_line(course_deg, start.across_m, distance_m_ - tolerance_m);
+    return std::ranges::any_of(parts, [&](const LinePart& part) {
         return std::min(part.to_m, end_m) - std::max(part.from_m, start.along_m) > tolerance_m;
     });
 }

@@ -26,13 +26,16 @@ class ClosedZones {
     /// Returns the parts of a line that are in a zone or nearer to it than the distance; they may overlap.
     std::vector<LinePart> parts_of_line(double course_deg, double offset_m) const;
 
-    /// Returns whether the straight way between two places leads more than 0.1 m through a zone.
+    /// Returns whether the straight way between two places leads more than 0.1 m through a zone, or more than 0.1 m nearer
+    /// to it than the distance.
     bool are_crossed(const LocalPosition& from, const LocalPosition& to) const;
 
     /// Returns the places at which the shortest way around the zones turns; none if there is no way.
     std::optional<std::vector<LocalPosition>> way_around(const LocalPosition& from, const LocalPosition& to) const;
 
   private:
+    std::vector<LinePart> parts_of_line(double course_deg, double offset_m, double distance_m) const;
+
     std::vector<Polygon> zones_;
     double distance_m_;
     std::vector<LocalPosition> corners_;  ///< places around their corners, at a little more than the distance

@@ -43,6 +43,19 @@ TEST(ClosedZones, HaveTheShortestWayAround) {
     EXPECT_NEAR(length_m, 315.6, 1.0);
 }
 
+TEST(ClosedZones, HaveAStraightWayAlongTheDistanceAtWhichLinesEnd) {
+    for (int course_deg = 0; course_deg < 180; ++course_deg) {
+        const LocalPosition corner{123.4, 56.7};
+        const auto next = moved(corner, 100.0, course_deg);
+        const auto right_deg = course_deg + 90.0;
+        const ClosedZones zones({{corner, next, moved(next, 80.0, right_deg), moved(corner, 80.0, right_deg)}}, 10.0);
+        const auto from = moved(moved(corner, 20.0, course_deg), -10.0, right_deg);
+        const auto to = moved(moved(corner, 70.0, course_deg), -10.0, right_deg);
+        EXPECT_TRUE(zones.way_around(from, to)->empty()) << course_deg;
+        EXPECT_FALSE(zones.way_around(from, moved(to, 1.0, right_deg)).has_value()) << "a place nearer than that";
+    }
+}
+
 TEST(ClosedZones, HaveNoWayToAPlaceInThem) { EXPECT_FALSE(ClosedZones({square}, 10.0).way_around({0, 0}, {150, 0})); }
 
 }  // namespace
