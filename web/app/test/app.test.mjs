@@ -233,6 +233,7 @@ test("an area is flown, and has a verdict with its command", { skip, ...patience
     await page.locator("[role=alert]").allTextContents().then(String),
   );
   assert.match(await page.textContent(".command code"), /new-mission .*--plan field.geojson/);
+  assert.match(await page.textContent(".verdict-band"), /capacity of the pack is unknown: the flights indicate 2\.\d to 11\.\d Ah/);
   const flown = page.locator(".map path.on-c1, .map path.on-c2");
   assert.ok((await flown.count()) > 0, "what is flown is drawn, coloured by the charge");
   assert.match(await page.textContent(".chart-key"), /charge left/);

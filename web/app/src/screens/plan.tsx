@@ -8,7 +8,7 @@ import { TrackMap, type Place, type Spot, type Track } from "../ui/map";
 import { Plot } from "../ui/plot";
 import { Slider } from "../ui/slider";
 import { track } from "../work/csv";
-import type { PlanBlock, PlanRemedy, Simulation } from "../work/documents";
+import type { Answer, PlanBlock, PlanRemedy, Simulation } from "../work/documents";
 import { blocksOf, flyPlan, isAboveTerrain, missionShown, planCommand, planFiles, remediesOf, type FlownPlan, type PlanOptions } from "../work/flown_plan";
 import { useLatest } from "../work/latest";
 import { inPageWords } from "../work/question";
@@ -83,7 +83,15 @@ export function verdictOf({ simulation, time_s, soc }: Curve, awaits_chance = fa
   return { grade: "good", title: `Fits ${packs}`, detail: lands, chance: words };
 }
 
-function Band({ flown: { curve, awaits_chance }, asking }: { flown: FlownPlan; asking: boolean }) {
+/// Returns that the pack of a plan is not known, where the answer lacks its capacity; missions have their own pack.
+export function unknownPack(answer: Answer | undefined, plan: string): string {
+  if (!answer || answer.capacity_ah.value != null || /\.toml$/i.test(plan)) return "";
+  const interval = answer.flights_capacity_ah_interval_95;
+  const indicated = interval ? `: the flights indicate ${number(interval.low, 1)} to ${quantity(interval.high, 1, "Ah")}, and one between is flown` : "";
+  return `The capacity of the pack is unknown${indicated}. Stated on the screen Answer, it makes this the verdict of your pack.`;
+}
+
+function Band({ flown: { options, curve, awaits_chance }, answer, asking }: { flown: FlownPlan; answer?: Answer; asking: boolean }) {
   const verdict = verdictOf(curve, awaits_chance);
   const [figure, ...rest] = verdict.chance.split(" of ");
   return (
@@ -97,6 +105,7 @@ function Band({ flown: { curve, awaits_chance }, asking }: { flown: FlownPlan; a
       <div>
         <h1>{verdict.title}</h1>
         <p>{verdict.detail}</p>
+        {unknownPack(answer, options.plan) && <p>{unknownPack(answer, options.plan)}</p>}
       </div>
       {verdict.chance && (
         <p class="band-chance">
@@ -572,7 +581,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             : "Does a plan fit?"}
       </h1>}
       {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
-      {shown && <Band flown={shown} asking={asking} />}
+      {shown && <Band flown={shown} answer={answered?.answer} asking={asking} />}
       <div class={`plan${options || drawing ? "" : " alone"}`}>
         <div class="plan-left">
           {!options && !drawing ? (
