@@ -74,7 +74,7 @@ ChosenAircraft choose_aircraft(const StageCall& call, const std::optional<std::s
 Fields<AircraftFolder> record_fields(const AircraftFolder*) {
     using R = AircraftFolder;
     return {field("aircraft", &R::aircraft, "text for --aircraft"), field("folder", &R::folder, "folder of its batch"),
-            field("flights", &R::flights, "flights of its fit, as in logs; its folder counts logs of one name anew"),
+            field("flights", &R::flights, "flights of its fit, as in logs; its folder counts logs of one name apart"),
             field("has_model", &R::has_model, "a model was fitted")};
 }
 

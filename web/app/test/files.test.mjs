@@ -71,7 +71,7 @@ test("plans of one name in two folders are two plans, and one that is known is s
   assert.equal(project.state.dropped.plan, "plans/north/field.kml");
 });
 
-test("a model is no map of columns, and is said not to be used", async () => {
+test("a model is no map of columns, and a message names it as not used", async () => {
   const { project, written } = projectOf();
   await project.add([{ path: "model.toml", file: new File(["name = \"fitted\"\n[cruise]\n"], "model.toml") }]);
   assert.deepEqual(written, []);
@@ -122,7 +122,7 @@ test("a question is the options of the program, and nothing is asked by nothing"
   assert.deepEqual(question.optionsOf({ mass_kg: 3.4 }), []);
 });
 
-test("what the program asks for by an option that the page has not is said in other words", () => {
+test("what the program asks for by an option that the page does not have is asked in other words", () => {
   const text = question.inPageWords("several aircraft flew: 1, 2; select one with --aircraft ID");
   assert.match(text, /^several aircraft flew: 1, 2; this page reads one aircraft of a log/);
 });

@@ -88,7 +88,7 @@ export function unknownPack(answer: Answer | undefined, plan: string): string {
   if (!answer || answer.capacity_ah.value != null || /\.toml$/i.test(plan)) return "";
   const interval = answer.flights_capacity_ah_interval_95;
   const indicated = interval ? `: the flights indicate ${number(interval.low, 1)} to ${quantity(interval.high, 1, "Ah")}, and one between is flown` : "";
-  return `The capacity of the pack is unknown${indicated}. Stated on the screen Answer, it makes this the verdict of your pack.`;
+  return `The capacity of the pack is unknown${indicated}. State it on the screen Answer: the result is then that of your pack.`;
 }
 
 function Band({ flown: { options, curve, awaits_chance }, answer, asking }: { flown: FlownPlan; answer?: Answer; asking: boolean }) {
