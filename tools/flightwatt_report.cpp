@@ -13,7 +13,6 @@
 #include "report/report.h"
 #include "stages.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>

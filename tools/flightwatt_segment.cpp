@@ -8,7 +8,6 @@
 #include "flight/phases_file.h"
 #include "stages.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <system_error>

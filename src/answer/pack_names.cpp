@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <map>
 #include <regex>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>

@@ -9,8 +9,6 @@
 #include <iterator>
 #include <optional>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>

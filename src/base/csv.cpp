@@ -10,11 +10,9 @@
 #include <forward_list>
 #include <regex>
 #include <stdexcept>
-#include <utility>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt {

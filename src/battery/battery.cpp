@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/piecewise_linear.h"
-#include "base/statistics.h"
 #include "base/units.h"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "base/number.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/discharge.h"
 
 #include <algorithm>
 #include <cmath>

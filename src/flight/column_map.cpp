@@ -4,7 +4,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/toml_reader.h"
-#include "base/units.h"
 #include "flight/flight_data.h"
 #include "flight/series_file.h"
 #include "telemetry/data_file.h"

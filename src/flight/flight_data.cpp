@@ -3,7 +3,6 @@
 #include "base/error.h"
 
 #include <array>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,6 @@
 #include "flight/flight_file.h"
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/input_file.h"
 #include "base/number.h"
 #include "flight/families/ardupilot_family.h"

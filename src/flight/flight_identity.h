@@ -3,7 +3,6 @@
 #include "flight/flight_series.h"
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -2,7 +2,6 @@
 
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "flight/flight_data.h"
 
 #include <algorithm>
 

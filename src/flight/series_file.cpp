@@ -1,6 +1,5 @@
 #include "flight/series_file.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/toml_fields.h"
@@ -15,7 +14,6 @@
 #include <map>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>

@@ -4,9 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>

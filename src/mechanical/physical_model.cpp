@@ -2,7 +2,6 @@
 
 #include "base/units.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -1,7 +1,6 @@
 #include "mechanical/validation.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/statistics.h"
 #include "base/units.h"
 #include "mechanical/fit/flight_variation.h"

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>

@@ -10,7 +10,6 @@
 #include "path/waypoint_files.h"
 
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 

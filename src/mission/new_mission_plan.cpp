@@ -3,7 +3,6 @@
 #include "base/error.h"
 
 #include <set>
-#include <string>
 
 #include <fmt/format.h>
 

@@ -5,14 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <map>
-#include <optional>
 #include <regex>
 #include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/split.hpp>

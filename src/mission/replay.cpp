@@ -1,7 +1,6 @@
 #include "mission/replay.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/units.h"
 #include "mission/plan.h"
 #include "mission/planning/planner.h"

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <regex>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

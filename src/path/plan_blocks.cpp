@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

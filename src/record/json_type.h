@@ -3,7 +3,6 @@
 #include "base/statistics.h"
 
 #include <array>
-#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <map>

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <map>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>

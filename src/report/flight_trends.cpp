@@ -7,14 +7,10 @@
 #include "report/document/columns.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
-#include <string_view>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace flightwatt::report {
 namespace {

@@ -8,7 +8,6 @@
 #include "report/batch_content.h"
 #include "report/latex_tables.h"
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>

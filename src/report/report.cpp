@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "batch/manifest.h"
 #include "cli/output/fit_output.h"
@@ -24,7 +23,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <future>
 #include <iterator>
 #include <set>

@@ -13,7 +13,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 /// The report of a folder of flightwatt batch and of missions: the document of a page and of figures, and LaTeX tables.

@@ -2,10 +2,8 @@
 
 #include "telemetry/telemetry_log.h"
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "base/number.h"
 #include "telemetry/autopilot/ulog_table_name.h"
 #include "telemetry/data_file.h"
-#include "telemetry/message_definition.h"
 
 #include <algorithm>
 #include <initializer_list>

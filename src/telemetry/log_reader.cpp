@@ -10,9 +10,6 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 #include "base/atomic_file.h"
 #include "base/number.h"
 #include "telemetry/log_configuration.h"
-#include "telemetry/message_definition.h"
 
 #include <algorithm>
 #include <charconv>

@@ -8,7 +8,6 @@
 #include <cctype>
 #include <filesystem>
 #include <iterator>
-#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

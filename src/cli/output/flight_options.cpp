@@ -15,10 +15,8 @@
 #include "mechanical/model_fit.h"
 #include "telemetry/log_configuration.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 

@@ -6,10 +6,6 @@
 #include "cli/output/flight_options.h"
 
 #include <set>
-#include <string_view>
-#include <utility>
-
-#include <fmt/format.h>
 
 namespace flightwatt::answer {
 

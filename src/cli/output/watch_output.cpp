@@ -5,8 +5,6 @@
 #include "cli/output/prediction_output.h"
 #include "record/json_type.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

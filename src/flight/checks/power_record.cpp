@@ -2,7 +2,6 @@
 
 #include "base/piecewise_linear.h"
 #include "base/statistics.h"
-#include "base/units.h"
 #include "flight/link_gaps.h"
 #include "flight/select/device_sum.h"
 

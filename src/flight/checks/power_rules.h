@@ -3,9 +3,6 @@
 #include "flight/checks/power_record.h"
 #include "flight/power_report.h"
 
-#include <string>
-#include <vector>
-
 namespace flightwatt::flight {
 
 /// Applies the table of power_rules.cpp to a power record: impossible records (faults exclude a flight from fits) and

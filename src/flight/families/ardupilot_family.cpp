@@ -4,12 +4,9 @@
 #include "flight/families/derived_tracks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <optional>
 #include <regex>
 #include <set>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>

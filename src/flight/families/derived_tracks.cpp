@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
-#include <optional>
-#include <utility>
 
 #include <GeographicLib/TransverseMercator.hpp>
 #include <fmt/format.h>

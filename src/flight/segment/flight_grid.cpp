@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "flight/flight_data.h"
 #include "flight/segment/altitude_record.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include "base/statistics.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 

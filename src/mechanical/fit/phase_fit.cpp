@@ -3,14 +3,12 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "mechanical/fit/fourier_basis.h"
 #include "mechanical/fit/joint_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <span>
 #include <utility>
 #include <vector>
 

@@ -5,9 +5,7 @@
 #include "mechanical/mechanical_model.h"
 #include "mechanical/phase_samples.h"
 
-#include <optional>
 #include <span>
-#include <vector>
 
 namespace flightwatt::mechanical {
 

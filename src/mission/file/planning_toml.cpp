@@ -1,6 +1,5 @@
 #include "mission/file/planning_toml.h"
 
-#include "base/toml_reader.h"
 #include "battery/battery_toml.h"
 
 #include <algorithm>

@@ -1,7 +1,5 @@
 #include "mission/planning/schedule_graph.h"
 
-#include <algorithm>
-
 namespace flightwatt::mission {
 namespace {
 

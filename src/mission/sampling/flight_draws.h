@@ -4,7 +4,6 @@
 #include "mission/sampling/flight_spreads.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/piecewise_linear.h"
 #include "base/units.h"
-#include "battery/discharge.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,6 @@
 #include "base/text.h"
 
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 #include "report/document/flights_document.h"
 
-#include "base/parallel.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "flight/flight_identity.h"

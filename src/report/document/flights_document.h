@@ -4,7 +4,6 @@
 #include "report/batch_content.h"
 #include "report/document/battery_document.h"
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

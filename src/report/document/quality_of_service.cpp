@@ -11,7 +11,6 @@
 #include <cmath>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>

@@ -5,7 +5,6 @@
 #include "telemetry/text/lines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>

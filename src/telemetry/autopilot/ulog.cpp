@@ -6,8 +6,6 @@
 #include "telemetry/text/lines.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>

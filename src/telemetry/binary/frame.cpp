@@ -1,8 +1,6 @@
 #include "telemetry/binary/frame.h"
 
-#include <cstddef>
 #include <cstring>
-#include <optional>
 
 namespace flightwatt::telemetry {
 namespace {

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <iterator>
 #include <string>
-#include <utility>
 
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/split.hpp>
