@@ -80,8 +80,4 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
 
 void limit_threads(std::size_t max_threads) { thread_limit = max_threads; }
 
-std::size_t threads_for(std::size_t count, std::size_t max_threads) {
-    return std::min(count, max_threads > 0 ? max_threads : cores());
-}
-
 }  // namespace flightwatt

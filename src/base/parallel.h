@@ -17,7 +17,4 @@ void limit_threads(std::size_t max_threads);
 /// Receives the progress of long work, from any thread.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// The most threads that a loop of `count` has: `max_threads`, or as many as it has cores to use (0).
-std::size_t threads_for(std::size_t count, std::size_t max_threads = 0);
-
 }  // namespace flightwatt

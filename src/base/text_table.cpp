@@ -204,11 +204,4 @@ std::string to_latex(const TextTable& table, std::string_view caption, std::stri
     return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
 }
 
-std::string to_latex(const std::vector<CaptionedTable>& tables) {
-    std::string text;
-    for (const auto& [table, caption, label] : tables)
-        if (!table.rows.empty()) text += (text.empty() ? "" : "\n") + to_latex(table, caption, label);
-    return text;
-}
-
 }  // namespace flightwatt

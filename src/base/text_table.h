@@ -42,7 +42,4 @@ std::string latex_number(std::string_view number);
 /// '-' stand to the right.
 std::string to_latex(const TextTable& table, std::string_view caption, std::string_view label);
 
-/// The same of several, an empty line apart; tables without rows are left out.
-std::string to_latex(const std::vector<CaptionedTable>& tables);
-
 }  // namespace flightwatt

@@ -70,13 +70,5 @@ TEST(Fixed, IsADashForWhatIsNotKnown) {
     EXPECT_EQ(fixed(std::nullopt, 3), "-");
 }
 
-TEST(ToLatex, OfSeveralLeavesOutThoseWithoutRows) {
-    const TextTable table{{"a"}, {{"1"}}};
-    const TextTable empty{{"a"}, {}};
-    EXPECT_EQ(to_latex({{empty, "None", "tab:none"}, {table, "One", "tab:one"}, {table, "Two", "tab:two"}}),
-              to_latex(table, "One", "tab:one") + "\n" + to_latex(table, "Two", "tab:two"));
-    EXPECT_EQ(to_latex(std::vector<CaptionedTable>{}), "");
-}
-
 }  // namespace
 }  // namespace flightwatt
