@@ -202,11 +202,10 @@ std::vector<MissionSlot> make_slots(const PlanningProblem& problem, double time_
     return slots;
 }
 
-Schedule minimum_energy_schedule(const PlanningProblem& problem, double time_s) {
+Schedule minimum_energy_schedule(const PlanningProblem& problem) {
     const auto least_power = min_power_configuration(problem);
     Schedule schedule;
-    for (const auto& slot : make_slots(problem, time_s))
-        append_merged(schedule, {slot, slot.fixed.value_or(least_power)});
+    for (const auto& slot : make_slots(problem)) append_merged(schedule, {slot, slot.fixed.value_or(least_power)});
     return schedule;
 }
 

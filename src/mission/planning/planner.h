@@ -27,10 +27,9 @@ struct PlanningTables {
 /// combinations.
 PlanningTables make_planning_tables(const PlanningProblem& problem);
 
-/// Returns the schedule of the mission from `time_s` on that demands least energy: the configuration that draws least
-/// wherever nothing is fixed (which any dwell time allows). Throws InputError as make_planning_tables does for too many
-/// combinations.
-Schedule minimum_energy_schedule(const PlanningProblem& problem, double time_s = 0.0);
+/// Returns the schedule of the mission that demands least energy: the configuration that draws least wherever nothing is
+/// fixed (which any dwell time allows). Throws InputError as make_planning_tables does for too many combinations.
+Schedule minimum_energy_schedule(const PlanningProblem& problem);
 
 /// Returns the mission with that schedule; one that has a schedule stays as it is.
 Mission with_minimum_energy_schedule(const MissionVariant& mission);

@@ -114,28 +114,27 @@ FlightDraw landing_draw(const Mission& mission, const FlightUncertainty& uncerta
     };
 }
 
-LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty, std::size_t flights) {
+LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty) {
     LandingSampler sampler(mission, uncertainty);
-    sampler.draw_until(flights);
+    sampler.draw_until(landing_flights);
     return sampler.landings();
 }
 
 LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
-                                              double probability, std::size_t max_flights) {
+                                              double probability) {
     LandingSampler sampler(mission, uncertainty);
-    draw_until_known([&](std::size_t flights) { sampler.draw_until(flights); }, sampler.landings(), probability,
-                     max_flights);
+    draw_until_known([&](std::size_t flights) { sampler.draw_until(flights); }, sampler.landings(), probability);
     return sampler.landings();
 }
 
 void draw_until_known(const std::function<void(std::size_t flights)>& draw_until, const LandingDistribution& landings,
-                      double probability, std::size_t max_flights) {
+                      double probability) {
     if (!(probability >= 0.5 && probability < 1.0))
         throw std::invalid_argument("draw_landings_until_known: the probability is not from 0.5 to below 1");
-    for (auto flights = std::min(first_flights, max_flights);; flights = std::min(2 * flights, max_flights)) {
+    for (auto flights = first_flights;; flights = std::min(2 * flights, landing_flights)) {
         draw_until(flights);
         const double off = std::abs(landings.below() - (1.0 - probability));
-        if (flights == max_flights || off > far_in_standard_errors * landings.standard_error()) return;
+        if (flights == landing_flights || off > far_in_standard_errors * landings.standard_error()) return;
     }
 }
 

@@ -32,18 +32,17 @@ struct LandingDistribution {
     double spare_percent(double probability) const { return quantile_percent(probability) - reserve_percent; }
 };
 
-/// Default number of drawn flights.
+/// Number of drawn flights.
 inline constexpr std::size_t landing_flights = 20000;  ///< standard error of a probability of 0.95: 0.0015
 
-/// Draws and simulates `flights` flights of the mission (sampling/flight_draws.h). The seed is the same in each call,
-/// so that schedules are compared on the same flights, and differs from that of --samples.
-LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty,
-                                  std::size_t flights = landing_flights);
+/// Draws and simulates landing_flights flights of the mission (sampling/flight_draws.h). The seed is the same in each
+/// call, so that schedules are compared on the same flights, and differs from that of --samples.
+LandingDistribution draw_landings(const Mission& mission, const FlightUncertainty& uncertainty);
 
 /// Draws flights as draw_landings(), but only until they show by four standard errors whether the mission keeps its
 /// reserve with more or less than `probability` (0.5 to below 1). Throws std::invalid_argument for another probability.
 LandingDistribution draw_landings_until_known(const Mission& mission, const FlightUncertainty& uncertainty,
-                                              double probability, std::size_t max_flights = landing_flights);
+                                              double probability);
 
 /// Searches the least margin above a reserve with which a plan keeps the reserve with a probability: by secants, with
 /// bracketing.
@@ -136,7 +135,7 @@ inline constexpr auto stated_flight = static_cast<std::size_t>(-1);
 /// Calls `draw_until`, which adds flights to `landings`, with more and more flights until draw_landings_until_known() has
 /// enough of them.
 void draw_until_known(const std::function<void(std::size_t flights)>& draw_until, const LandingDistribution& landings,
-                      double probability, std::size_t max_flights = landing_flights);
+                      double probability);
 
 /// Simulates one flight through its segments by advance_segment().
 FlightOutcome simulate_flight(const DrawnFlight& flight);
