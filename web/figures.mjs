@@ -62,7 +62,7 @@ function modelFigure(model, id) {
     band: band && table(band),
     model: table({ time_s, power_w }),
   }));
-  return figure("model", id, `Mechanical power model ${model.fit.name} over each phase.`, {}, panels);
+  return figure("model", id, `Mechanical power model ${model.name} over each phase.`, {}, panels);
 }
 
 function physicalFigure({ fit, level, bins, best }) {

@@ -73,23 +73,22 @@ Json lines_of(const AircraftTrend& trend) {
 }
 
 Json trend_json(const AircraftTrend& trend) {
-    auto json = record_json(trend);
-    json["aircraft"] = trend.aircraft;
-    json["title"] = title_of(trend);
-    json["direction"] = trend_direction(trend);
     const auto& slope = trend.answer.trend;
-    json["change_in_30_days"] = slope ? Json(shown_days * slope->per_day) : Json();
-    json["change_in_30_days_interval_95"] =
-        slope ? JsonType<Interval>::write({shown_days * slope->low_per_day, shown_days * slope->high_per_day}) : Json();
     std::vector<double> clock_s;
     std::vector<double> values;
     for (const auto& [day, value] : trend.values) {
         clock_s.push_back(day * seconds_per_day);
         values.push_back(value);
     }
-    json["flights"] = {{"clock_s", rounded_column(clock_s, 0)}, {"value", column_of(values)}};
-    json["lines"] = lines_of(trend);
-    return json;
+    return {{"aircraft", trend.aircraft},
+            {"title", title_of(trend)},
+            {"direction", trend_direction(trend)},
+            {"change_in_30_days", slope ? Json(shown_days * slope->per_day) : Json()},
+            {"change_in_30_days_interval_95",
+             slope ? JsonType<Interval>::write({shown_days * slope->low_per_day, shown_days * slope->high_per_day})
+                   : Json()},
+            {"flights", {{"clock_s", rounded_column(clock_s, 0)}, {"value", column_of(values)}}},
+            {"lines", lines_of(trend)}};
 }
 
 }  // namespace
@@ -198,14 +197,9 @@ Json trends_json(const std::vector<AircraftTrend>& trends, const answer::PackLed
     if (!has_trend && !has_packs) return nullptr;
     tables.add({table_of(ledger.packs), "Packs with their flights", "tab:packs"});
     if (has_trend) tables.add({table_of(trends), "Trends over the dates of flights", "tab:trends"});
-    auto packs = Json::array();
-    for (const auto& pack : ledger.packs) {
-        packs.push_back(record_json(pack));
-        packs.back()["text"] = describe(pack);
-    }
     auto all = Json::array();
     for (const auto& trend : trends) all.push_back(trend_json(trend));
-    return {{"packs", std::move(packs)},
+    return {{"packs", json_list<answer::Pack>(ledger.packs)},
             {"notes", ledger.notes},
             {"text",
              "Aircraft and packs over the dates of their flights. A trend is significant if its interval excludes 0; "

@@ -52,7 +52,6 @@ struct Draft {
 Json empty_document() {
     auto document = Json::object();
     document["format"] = 1;
-    document["program"] = "flightwatt " FLIGHTWATT_VERSION;
     for (const auto* key : {"title", "name", "command", "headline"}) document[key] = "";
     for (const auto* key : {"facts", "aircraft", "missions", "quality", "software", "packs", "flights", "exclusions",
                             "outlines", "models", "warnings", "notes", "files"})

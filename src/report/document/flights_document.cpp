@@ -106,11 +106,8 @@ Json phases_of(const flight::FlightPhases& phases) {
     auto all = Json::array();
     for (const auto& sortie : phases.sorties)
         for (const auto& span : sortie.phases)
-            all.push_back({{"sortie", sortie.number},
-                           {"phase", to_string(span.phase)},
-                           {"start_s", span.start.time_s},
-                           {"end_s", span.end.time_s},
-                           {"complete", span.complete}});
+            all.push_back(
+                {{"phase", to_string(span.phase)}, {"start_s", span.start.time_s}, {"end_s", span.end.time_s}});
     return all;
 }
 

@@ -227,16 +227,12 @@ Json missions_json(const Findings& findings, LatexTables& tables) {
         const auto& summary = simulated.simulation.summary;
         auto card = cards[i];
         card.better = better_schedule(missions, cards, i);
-        const auto answer = record_json(MissionOutput{&simulated, &findings.assessments[i]});
         const auto place = std::ranges::find(ranking, simulated.title,
                                              [](const cli::RankedMission& one) { return one.summary.mission; });
         Json json{{"title", simulated.title},
                   {"rank", place == ranking.end() ? i + 1 : place->rank},
                   {"outcome", words_of(card.outcome).name},
                   {"summary", record_json(summary)},
-                  {"reach", answer.at("reach")},
-                  {"reach_with_95_percent", answer.at("reach_with_95_percent")},
-                  {"min_capacity_ah", answer.at("min_capacity_ah")},
                   {"card", record_json(card)}};
         json.update(curve_json(simulated.simulation));
         json["band"] = band_of(summary);

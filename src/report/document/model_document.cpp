@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "cli/output/fit_output.h"
 #include "cli/output/physical_output.h"
 #include "cli/output/prediction_output.h"
 #include "mechanical/physical_fit.h"
@@ -74,8 +73,7 @@ Json errors_json(std::span<const mechanical::ValidatedFlight> flights) {
             predicted_wh.push_back(energy->estimate.energy_wh);
             error_wh.push_back(predicted_wh.back() - measured_wh.back());
         }
-        errors.push_back({{"model", model},
-                          {"title", words_of_model(model)},
+        errors.push_back({{"title", words_of_model(model)},
                           {"flight", names},
                           {"error_wh", column_of(error_wh)},
                           {"measured_wh", column_of(measured_wh)},
@@ -167,7 +165,9 @@ Json model_json(const ReportModel& model) {
         {"is_of_missions", model.is_of_missions},
         {"origin", model.origin},
         {"description", model.model.description},
-        {"fit", record_json(cli::FitOutput{&model.model, nullptr, true})},
+        {"name", model.model.name},
+        {"warnings", model_warnings(model.model)},
+        {"notes", fit_notes(model.model)},
         {"curves", curves_json(model)},
         {"table_one",
          model.table_one ? printed_json(*model.table_one, "Coefficients of the model as the paper's Table I") : Json()},

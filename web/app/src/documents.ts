@@ -20,8 +20,6 @@ export interface PrintedTable {
 /// The document of a page of `flightwatt report` or `answer`. Parts that the inputs do not have are null or empty.
 export interface ReportDocument {
   format: 1;
-  /// "flightwatt 0.2.0".
-  program: string;
   /// The title of the tab: "20 Faulty: 3 flights, 3 to 10 July 2020; 9 missions".
   title: string;
   /// The title in the bar: "FlightWatt report", or what --title states.
@@ -189,13 +187,6 @@ export interface ChargeCurve {
   soc_percent: (number | null)[];
 }
 
-export interface Reach {
-  longest_cruise_s?: number;
-  most_circles?: number;
-  farthest_return_m?: number;
-  path_times?: number;
-}
-
 /// A mission as `simulate --json` prints it.
 export interface MissionSummary {
   mission: string;
@@ -237,9 +228,6 @@ export interface MissionDocument {
   rank: number;
   outcome: Outcome;
   summary: MissionSummary;
-  reach: Reach | null;
-  reach_with_95_percent: Reach | null;
-  min_capacity_ah: number | null;
   /// The texts of the mission's card. Empty: there is no such text.
   card: {
     /// "below reserve".
@@ -443,7 +431,7 @@ export interface FlightDetail {
   /// Origin of the power: "ENERGY.voltage * ENERGY.current".
   power_source: string;
   circuits: { name: string; energy_wh: number; percent: number }[];
-  phases: { sortie: number; phase: PhaseName; start_s: number; end_s: number; complete: boolean }[];
+  phases: { phase: PhaseName; start_s: number; end_s: number }[];
   /// Where phases begin and end, with the evidence.
   edges: { time_s: number; name: string; evidence: string }[];
   /// The model's curve is of each complete phase, scaled to its duration.
@@ -485,44 +473,15 @@ export interface Exclusion {
 
 // ---- models (docs/reference/fit.md, validate.md)
 
-export interface FittedPhase {
-  duration_s: number;
-  omega_rad_per_s: number;
-  a0_w: number;
-  cos_w: number[];
-  sin_w: number[];
-  rms_w: number;
-  samples: number;
-  flights: number;
-  edge_samples: number;
-  open_frequency: boolean;
-  power: "curve" | "mean";
-  power_reason: string;
-  not_negative: boolean;
-  mean_power_w?: number;
-  mean_power_w_interval_95: Interval | null;
-  omega_rad_per_s_interval_95?: Interval;
-  a0_w_interval_95?: Interval;
-  cos_w_interval_95?: Interval[];
-  sin_w_interval_95?: Interval[];
-}
-
 export interface ModelDocument {
   /// It is of missions, and not of the flights.
   is_of_missions: boolean;
   /// "Fitted by flightwatt batch to the flights above (order 3, weights: ...)."
   origin: string;
   description: string;
-  /// `fit --json`.
-  fit: {
-    name: string;
-    weighting: string;
-    phases: PerPhase<FittedPhase>;
-    flights: { flight: string; weights: PerPhase<number | null> }[];
-    validation?: { default_model: string; scores: { model: string; flights: number; mean_absolute_error_percent: number }[] };
-    warnings: string[];
-    notes: string[];
-  };
+  name: string;
+  warnings: string[];
+  notes: string[];
   /// Power over the time of each phase; bands are null where they are unknown.
   curves: {
     phase: PhaseName;
@@ -588,7 +547,7 @@ export interface ValidationDocument {
   /// `validate --json`: scores by model.
   scores: { flights: number; takeoff: Record<string, ModelScore>; cruise: Record<string, ModelScore>; landing: Record<string, ModelScore>; total: Record<string, ModelScore>; folds: number };
   /// The energy of whole flights, predicted from the others.
-  errors: { model: string; title: string; flight: string[]; error_wh: number[]; measured_wh: number[]; predicted_wh: number[] }[];
+  errors: { title: string; flight: string[]; error_wh: number[]; measured_wh: number[]; predicted_wh: number[] }[];
 }
 
 // ---- battery and packs (docs/reference/battery.md, trends.md)
@@ -696,24 +655,14 @@ export interface Pack {
 }
 
 export interface TrendsDocument {
-  /// The ledger, with one sentence for each pack.
-  packs: (Pack & { text: string })[];
+  packs: Pack[];
   notes: string[];
   text: string;
   /// One for each aircraft and quantity.
   trends: {
     aircraft: string;
-    aircraft_id: string;
-    aircraft_name: string;
-    quantity: string;
     /// "cruise power [W]".
     title: string;
-    dated_flights: number | null;
-    median: number | null;
-    per_day: number | null;
-    per_day_interval_95: Interval | null;
-    significant: boolean | null;
-    no_trend_reason: string;
     /// "rises", "falls", "not significant", or "unknown: ..."
     direction: string;
     change_in_30_days: number | null;

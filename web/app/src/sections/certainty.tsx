@@ -16,7 +16,7 @@ export function Certainty({ of }: { of: ReportDocument }) {
   return (
     <div class="card certainty">
       {validation && <Opened title="How well flights are predicted" aside={validation.warning && "SYNTHETIC flights"}>{() => <ValidationPart validation={validation} />}</Opened>}
-      {models.map((model) => <Opened title={`${model.is_of_missions ? "Missions' model" : "Model"} of power: ${model.fit.name}`}>{() => <ModelPart model={model} />}</Opened>)}
+      {models.map((model) => <Opened title={`${model.is_of_missions ? "Missions' model" : "Model"} of power: ${model.name}`}>{() => <ModelPart model={model} />}</Opened>)}
       {physical && <Opened title="Power from airspeed and climb">{() => <PhysicalPart physical={physical} />}</Opened>}
       {battery && <Opened title="Battery" id="battery" aside={battery.warnings.length > 0 && plural(battery.warnings.length, "warning")}>{() => <BatteryPart battery={battery} />}</Opened>}
       {software.length > 0 && <Opened title="Power of the software">{() => <Profiles software={software} />}</Opened>}

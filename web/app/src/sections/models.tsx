@@ -13,8 +13,8 @@ export function ModelPart({ model }: { model: ModelDocument }) {
   return (
     <>
       <p>{model.origin} {model.description}</p>
-      {model.fit.warnings.map((text) => <p><b>Warning:</b> {text}</p>)}
-      {model.fit.notes.length > 0 && <ul class="soft">{model.fit.notes.map((note) => <li>{note}</li>)}</ul>}
+      {model.warnings.map((text) => <p><b>Warning:</b> {text}</p>)}
+      {model.notes.length > 0 && <ul class="soft">{model.notes.map((note) => <li>{note}</li>)}</ul>}
       <div class="phase-charts">
         {curves.map(({ phase, time_s, power_w, band, flights }) => (
           <div>

@@ -3,7 +3,6 @@
 export const mission = (title, outcome, rest = {}) => ({
   title, rank: 1, outcome,
   summary: { mission: title, final_soc_percent: 33.5, reserve_soc_percent: 20, keeps_reserve: outcome === "keeps", energy_wh: 58.77, mechanical_energy_wh: 50.5, compute_energy_wh: 8.27, delivered_energy_wh: 58.77, duration_s: 600, depleted_at_s: null, cut_off_at_s: null, feasible: true, probability_below_reserve: 0.04, ...rest.summary },
-  reach: null, reach_with_95_percent: null, min_capacity_ah: null,
   card: { words: outcome === "keeps" ? "keeps reserve" : "runs empty", lead: `Lead of ${title}`, runs: "no software", landing: "33.5 %", aim: "keeps the reserve of 20 %", probability: "96 %", reach_name: "Longest cruise at 95 %", reach: "7 min 44 s", planned: "7 min", help: "", better: "", notes: [], ...rest.card },
   curve: { time_s: [0, 300, 600], soc_percent: [100, 66, 33.5] },
   landing_soc_percent: outcome === "fails" ? null : 33.5, end_s: outcome === "fails" ? 480 : 600,
@@ -25,6 +24,6 @@ export const flight = (name, rest = {}) => ({ name, title: name, aircraft: "Wing
 
 /** A document without any part. */
 export const empty = () => ({
-  format: 1, program: "flightwatt 0", title: "Title", name: "FlightWatt report", facts: [{ name: "by", text: "flightwatt 0" }], command: "flightwatt report runs", headline: "Headline of the page", aircraft: [], answer: null, panel: null,
+  format: 1, title: "Title", name: "FlightWatt report", facts: [{ name: "by", text: "flightwatt 0" }], command: "flightwatt report runs", headline: "Headline of the page", aircraft: [], answer: null, panel: null,
   missions: [], quality: [], schedules: null, software: [], packs: [], flights: [], exclusions: [], outlines: [], models: [], physical: null, validation: null, battery: null, trends: null, replay: null, warnings: [], notes: [],
 });
