@@ -141,30 +141,26 @@ class StandardInputFile {
 
 /// The options of every stage.
 struct CommonOptions {
-    bool wide = false;
-    std::optional<std::string> output;
-    bool json = false;
     bool json_usage = false;
     bool json_schema = false;
     bool quiet = false;
-    bool notes = false;
     bool help = false;
     bool help_all = false;
     bool version = false;
     std::size_t jobs = 0;
 };
 
-void add_common_options(StageDefinition& stage, CommonOptions& common) {
+void add_common_options(StageDefinition& stage, StageCall& call, CommonOptions& common) {
     constexpr double max_jobs = 256;
     auto& options = stage.options;
     options.begin_group("Common options");
-    options.add("output,o", common.output, {.value = stage.output_value, .file = FileRole::output}, stage.output_help);
-    options.add("json", common.json, "print the summary as JSON");
-    if (stage.shows_table) options.add("wide", common.wide, "on a terminal: all columns, also beyond its width");
+    options.add("output,o", call.output, {.value = stage.output_value, .file = FileRole::output}, stage.output_help);
+    options.add("json", call.json, "print the summary as JSON");
+    if (stage.shows_table) options.add("wide", call.wide, "on a terminal: all columns, also beyond its width");
     if (stage.uses_threads)
         options.add("jobs,j", common.jobs, {.value = "N", .max = max_jobs}, "threads; 0: one for each core");
     options.add("quiet,q", common.quiet, "print no notes and no progress; warnings and errors remain");
-    options.add("notes", common.notes, "list all notes, and each warning of each flight", {.excludes = {"quiet"}});
+    options.add("notes", call.notes, "list all notes, and each warning of each flight", {.excludes = {"quiet"}});
     options.add("help,h", common.help, "show this help");
     options.add("help-all", common.help_all, "show this help, with expert options");
     options.add("json-usage", common.json_usage, "print inputs and options of this stage as JSON");
@@ -228,8 +224,9 @@ void note_written(const StageDefinition& stage, const StageCall& call) {
 }
 
 int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
+    StageCall call;
     CommonOptions common;
-    add_common_options(stage, common);
+    add_common_options(stage, call, common);
     if (argc == 2 && std::string_view(argv[1]) == "--list-options") {
         print(stage.options.list_text());
         return ok;
@@ -241,17 +238,13 @@ int run(int argc, char** argv, StageDefinition& stage, const StageBody& body) {
     if (print_information(stage, common)) return ok;
     stage.options.assign(given);
     check_input_count(stage, given.inputs);
-    StageCall call;
     call.program = "flightwatt-" + stage.name;
     call.command = "flightwatt " + stage.name;
     for (int i = 1; i < argc; ++i) call.command += " " + shell_quoted(argv[i]);
     for (const auto& [name, texts] : given.options) call.given.insert(name);
     call.inputs = given.inputs;
-    call.json = common.json;
-    call.wide = common.wide;
-    call.notes = common.notes;
     call.is_live = stage.is_live;
-    call.output = common.output == "-" ? std::nullopt : common.output;
+    if (call.output == "-") call.output.reset();
     is_quiet = common.quiet;
     if (common.quiet) hide_progress();
     limit_threads(common.jobs);
