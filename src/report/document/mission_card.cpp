@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -184,22 +185,6 @@ std::string capitalized(std::string text) {
     return text;
 }
 
-Fields<MissionCard> record_fields(const MissionCard*) {
-    using R = MissionCard;
-    return {field("words", &R::words),
-            field("lead", &R::lead),
-            field("runs", &R::runs),
-            field("landing", &R::landing),
-            field("aim", &R::aim),
-            field("probability", &R::probability),
-            field("reach_name", &R::reach_name),
-            field("reach", &R::reach),
-            field("planned", &R::planned),
-            field("help", &R::help),
-            field("better", &R::better),
-            field("notes", &R::notes)};
-}
-
 std::string probability_text(double probability) {
     constexpr double margin = 0.005;
     if (probability < margin) return "under 1 %";
@@ -215,18 +200,19 @@ MissionCard mission_card(const SimulatedMission& simulated, const MissionAssessm
     const bool is_cruise = reach && reach->unit == ReachUnit::cruise_s;
     const double landing = summary.final_soc_percent.value_or(0.0);
     const auto below = known_probability_below_reserve(summary);
-    return {.outcome = outcome,
-            .words = outcome_words(outcome, summary),
-            .lead = describe_landing(simulated),
-            .runs = valid_utf8(describe_software(simulated)),
-            .landing = landing > 0.0 ? fmt::format("{:.1f} %", landing) : "0 %",
-            .aim = describe_aim(summary.reserve_soc_percent),
-            .probability = below ? probability_text(1.0 - *below) : std::string("unknown"),
-            .reach_name = name_of_reach(answer),
-            .reach = reach ? describe_reach(*reach) : "",
-            .planned = is_cruise ? duration_text(planned_cruise_s(simulated)) : "",
-            .help = describe_help(simulated, answer, outcome),
-            .notes = notes_of(simulated, answer)};
+    return {outcome,
+            {{"words", outcome_words(outcome, summary)},
+             {"lead", describe_landing(simulated)},
+             {"runs", valid_utf8(describe_software(simulated))},
+             {"landing", landing > 0.0 ? fmt::format("{:.1f} %", landing) : "0 %"},
+             {"aim", describe_aim(summary.reserve_soc_percent)},
+             {"probability", below ? probability_text(1.0 - *below) : "unknown"},
+             {"reach_name", name_of_reach(answer)},
+             {"reach", reach ? describe_reach(*reach) : ""},
+             {"planned", is_cruise ? duration_text(planned_cruise_s(simulated)) : ""},
+             {"help", describe_help(simulated, answer, outcome)},
+             {"better", ""},
+             {"notes", notes_of(simulated, answer)}}};
 }
 
 }  // namespace flightwatt::report

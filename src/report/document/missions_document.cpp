@@ -62,7 +62,7 @@ std::string better_schedule(Missions missions, const std::vector<MissionCard>& c
         if (cards[i].outcome == Outcome::keeps && is_same && other.simulation.summary.samples)
             return fmt::format("With \u201c{}\u201d {} in {} of flights", other.title,
                                setup.reserve_soc_percent > 0.0 ? "it keeps the reserve" : "the battery lasts",
-                               cards[i].probability);
+                               cards[i].texts.at("probability").get<std::string>());
     }
     return "";
 }
@@ -193,7 +193,9 @@ Json component_json(const compute::Component& component) {
 std::string missions_headline(const Findings& findings) {
     const auto cards = cards_of(findings);
     if (cards.empty()) return "";
-    if (cards.size() == 1) return fmt::format("{}: {}", findings.missions.front().title, cards.front().lead);
+    if (cards.size() == 1)
+        return fmt::format("{}: {}", findings.missions.front().title,
+                           cards.front().texts.at("lead").get<std::string>());
     if (cards.front().outcome == Outcome::keeps)
         return fmt::format("{} missions land as planned",
                            cards.size() == 2 ? "Both" : "All " + number_word(cards.size()));
@@ -203,7 +205,7 @@ std::string missions_headline(const Findings& findings) {
         const auto count = static_cast<std::size_t>(std::ranges::count_if(cards, is_this));
         if (count == 0 || (outcome == Outcome::may_miss && !parts.empty())) continue;
         const bool run_empty = std::ranges::all_of(
-            cards, [&](const MissionCard& card) { return !is_this(card) || card.words == "runs empty"; });
+            cards, [&](const MissionCard& card) { return !is_this(card) || card.texts.at("words") == "runs empty"; });
         const auto& known = words_of(outcome);
         const std::string words =
             run_empty ? (count == 1 ? "runs empty" : "run empty") : (count == 1 ? known.of_one : known.of_several);
@@ -225,15 +227,15 @@ Json missions_json(const Findings& findings, LatexTables& tables) {
     for (std::size_t i = 0; i < missions.size(); ++i) {
         const auto& simulated = missions[i];
         const auto& summary = simulated.simulation.summary;
-        auto card = cards[i];
-        card.better = better_schedule(missions, cards, i);
+        auto card = cards[i].texts;
+        card["better"] = better_schedule(missions, cards, i);
         const auto place = std::ranges::find(ranking, simulated.title,
                                              [](const cli::RankedMission& one) { return one.summary.mission; });
         Json json{{"title", simulated.title},
                   {"rank", place == ranking.end() ? i + 1 : place->rank},
-                  {"outcome", words_of(card.outcome).name},
+                  {"outcome", words_of(cards[i].outcome).name},
                   {"summary", record_json(summary)},
-                  {"card", record_json(card)}};
+                  {"card", std::move(card)}};
         json.update(curve_json(simulated.simulation));
         json["band"] = band_of(summary);
         json["phases"] = phases_of(simulated.mission.setup);

@@ -20,14 +20,15 @@ namespace {
 
 /// The card as sentences.
 std::vector<std::string> card_lines(const SimulatedMission& simulated, const MissionAssessment& answer) {
-    const auto card = mission_card(simulated, answer);
-    std::vector<std::string> lines{fmt::format("{}: {}", capitalized(card.words), card.lead),
-                                   fmt::format("Probability: {}: {}", card.aim, card.probability)};
-    if (!card.reach.empty())
-        lines.push_back(fmt::format("{}: {}{}", card.reach_name, card.reach,
-                                    card.planned.empty() ? "" : fmt::format(" (planned: {})", card.planned)));
-    if (!card.help.empty()) lines.push_back(card.help);
-    lines.insert(lines.end(), card.notes.begin(), card.notes.end());
+    const auto card = mission_card(simulated, answer).texts;
+    const auto text = [&](const char* key) { return card.at(key).get<std::string>(); };
+    std::vector<std::string> lines{fmt::format("{}: {}", capitalized(text("words")), text("lead")),
+                                   fmt::format("Probability: {}: {}", text("aim"), text("probability"))};
+    if (!text("reach").empty())
+        lines.push_back(fmt::format("{}: {}{}", text("reach_name"), text("reach"),
+                                    text("planned").empty() ? "" : fmt::format(" (planned: {})", text("planned"))));
+    if (!text("help").empty()) lines.push_back(text("help"));
+    for (const auto& note : card.at("notes")) lines.push_back(note.get<std::string>());
     return lines;
 }
 
@@ -151,7 +152,7 @@ TEST(MissionAnswer, StatesThatTheLongestFlightIsAtTheLimit) {
     auto simulated = simulate_for_report({test::paper_mission("invariant-32fps-448bit")}).front();
     simulated.is_longest = true;
     EXPECT_EQ(outcome_of(simulated), Outcome::keeps);
-    EXPECT_EQ(mission_card(simulated, {}).help,
+    EXPECT_EQ(mission_card(simulated, {}).texts.at("help"),
               "The longest flight that the battery lasts as modelled: how flights differ is unknown");
 }
 
@@ -168,7 +169,7 @@ TEST(MissionAnswer, OffersAPlanWithAMarginWhereOneIsInReach) {
         EXPECT_EQ(outcome_of(simulated), Outcome::may_miss);
         const auto answer = assess_mission(simulated, reading);
         EXPECT_TRUE(answer.is_unplanned);
-        return mission_card(simulated, answer).help;
+        return mission_card(simulated, answer).texts.at("help").get<std::string>();
     };
     EXPECT_THAT(last_line(reading_with(3.0)), HasSubstr("Plan it with --probability 0.95"));
     EXPECT_THAT(last_line(reading_of("plan")),
