@@ -157,11 +157,17 @@ std::optional<char> stated_separator(std::string_view line) {
 
 /// The cells of a line; empty where a quote is not closed, as in the text of a preamble.
 std::vector<std::string> cells_of(std::string_view line, char separator) {
+    CsvRowView row{0, {}};
+    const std::string file;
+    LineSplitter splitter(file, row, {separator});  // owns texts of the cells
+    std::vector<std::string> cells;
     try {
-        return csv_cells(line, separator);
+        splitter.split(line);
     } catch (const InputError&) {
-        return {};
+        return cells;
     }
+    for (const auto& cell : row.cells) cells.emplace_back(cell.text);
+    return cells;
 }
 
 /// How a line would be read as the header.
@@ -306,16 +312,6 @@ void for_each_csv_row(std::string_view text, const std::string& file, const CsvR
             refuse_length(file, row, width, dialect.separator);
     }
     if (width == 0) throw InputError({file}, "is empty, expected a CSV table");
-}
-
-std::vector<std::string> csv_cells(std::string_view line, char separator) {
-    CsvRowView row{0, {}};
-    const std::string file;
-    LineSplitter splitter(file, row, {separator});  // owns texts of the cells
-    splitter.split(line);
-    std::vector<std::string> cells;
-    for (const auto& cell : row.cells) cells.emplace_back(cell.text);
-    return cells;
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& file, CsvHeader header) {

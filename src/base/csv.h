@@ -63,9 +63,6 @@ using CsvRowReader = std::function<void(const CsvRowView&)>;
 void for_each_csv_row(std::string_view text, const std::string& file, const CsvRowReader& on_row,
                       const CsvDialect& dialect = {}, const CsvRowReader& on_ragged = {});
 
-/// The cells of one line. Throws InputError as parse_csv does.
-std::vector<std::string> csv_cells(std::string_view line, char separator);
-
 /// The header of a table of another program, and how its cells are separated.
 struct CsvHeaderLine {
     CsvDialect dialect;

@@ -31,6 +31,11 @@ double current_at_a(const Battery& battery, double voltage_v, double power_w) {
     return 2.0 * power_w / (u + std::sqrt(discriminant));
 }
 
+/// [V] before the series resistor: open circuit less the RC pair.
+double source_voltage_v(const Battery& battery, const BatteryState& state) {
+    return open_circuit_voltage_v(battery, state.soc_percent) - state.rc_voltage_v;
+}
+
 }  // namespace
 
 std::vector<flight::MonitorShare> common_monitors(const std::vector<std::vector<flight::MonitorShare>>& flights) {
@@ -82,10 +87,6 @@ double open_circuit_voltage_v(const Battery& battery, double soc_percent) {
     if (!battery.thevenin) return battery.voltage_v;
     const auto& curve = battery.thevenin->open_circuit;
     return interpolate_clamped(curve.soc_percent, curve.voltage_v, soc_percent);
-}
-
-double source_voltage_v(const Battery& battery, const BatteryState& state) {
-    return open_circuit_voltage_v(battery, state.soc_percent) - state.rc_voltage_v;
 }
 
 double warmed_resistance_ohm(const Battery& battery, double warming_per_j, double heat_a2s) {

@@ -100,9 +100,6 @@ double full_energy_wh(const Battery& battery);
 /// [V] at rest.
 double open_circuit_voltage_v(const Battery& battery, double soc_percent);
 
-/// [V] before the series resistor: open circuit less the RC pair.
-double source_voltage_v(const Battery& battery, const BatteryState& state);
-
 /// [ohm] in series after so much heat of the current in one ohm [J], as the pack warms; 1/R rises with the heat.
 double warmed_resistance_ohm(const Battery& battery, double warming_per_j, double heat_a2s);
 

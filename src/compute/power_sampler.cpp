@@ -371,6 +371,19 @@ class CommandSampler {
     std::size_t lines_ = 0;  ///< since the start
 };
 
+/// A program that prints watts, a number a line: one that keeps printing, each line stamped on arrival, or one that
+/// prints and exits with 0, which is restarted for each reading. It ends with the sampler, with its children. Reading
+/// throws InputError for a line that is not a number, NoResultError when the program fails or ends without a line.
+PowerSampler open_command_sampler(const SamplerSettings& settings) {
+    auto meter = std::make_shared<CommandSampler>(settings);
+    PowerSampler sampler;
+    sampler.kind = SamplerKind::command;
+    sampler.source = fmt::format("{}", fmt::join(settings.command, " "));
+    sampler.read = [meter] { return meter->read(); };
+    sampler.file = [meter] { return meter->file(); };
+    return sampler;
+}
+
 }  // namespace
 
 std::string_view to_string(SamplerKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
@@ -416,16 +429,6 @@ PowerSampler open_sampler(const SamplerSettings& settings) {
         settings.kind == SamplerKind::automatic ? "power sensor"
                                                 : fmt::format("sensor of kind {}", to_string(settings.kind)),
         settings.sysfs.string()));
-}
-
-PowerSampler open_command_sampler(const SamplerSettings& settings) {
-    auto meter = std::make_shared<CommandSampler>(settings);
-    PowerSampler sampler;
-    sampler.kind = SamplerKind::command;
-    sampler.source = fmt::format("{}", fmt::join(settings.command, " "));
-    sampler.read = [meter] { return meter->read(); };
-    sampler.file = [meter] { return meter->file(); };
-    return sampler;
 }
 
 }  // namespace flightwatt::compute

@@ -55,9 +55,4 @@ SamplerSettings read_sampler_settings(const TomlTable& root, const std::filesyst
 /// searched paths.
 PowerSampler open_sampler(const SamplerSettings& settings);
 
-/// A program that prints watts, a number a line: one that keeps printing, each line stamped on arrival, or one that
-/// prints and exits with 0, which is restarted for each reading. It ends with the sampler, with its children. Reading
-/// throws InputError for a line that is not a number, NoResultError when the program fails or ends without a line.
-PowerSampler open_command_sampler(const SamplerSettings& settings);
-
 }  // namespace flightwatt::compute

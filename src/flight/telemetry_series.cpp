@@ -283,19 +283,8 @@ void set_start_clock(FlightSeries& series) {
     }
 }
 
-}  // namespace
-
-std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender) {
-    ClockFaults faults;
-    for (const auto& table : sender.tables) add_faults(table, faults);
-    const auto& first = faults.restart;
-    if (faults.overlaps.size() < enough_late_rows) return first;
-    std::ranges::sort(faults.overlaps, {},
-                      [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
-    const auto& shown = faults.overlaps[enough_late_rows - 1];
-    return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
-}
-
+/// Finds the rows of a clock that was set back by seconds and passes the same times again, too few for a restart;
+/// std::nullopt without any.
 std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender) {
     ClockStep largest;
     std::size_t rows = 0;
@@ -310,6 +299,19 @@ std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLo
         fmt::format("the clock is set back by {:.1f} s at {:.1f} s, so that times occur twice",
                     largest.from_s - largest.to_s, largest.from_s),
         {{largest.from_s, rows, 0}}};
+}
+
+}  // namespace
+
+std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender) {
+    ClockFaults faults;
+    for (const auto& table : sender.tables) add_faults(table, faults);
+    const auto& first = faults.restart;
+    if (faults.overlaps.size() < enough_late_rows) return first;
+    std::ranges::sort(faults.overlaps, {},
+                      [](const ClockRestart& at) { return std::tuple(at.visible_from_s, at.to_s, at.message); });
+    const auto& shown = faults.overlaps[enough_late_rows - 1];
+    return first && first->visible_from_s <= shown.visible_from_s ? first : shown;
 }
 
 std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log) {

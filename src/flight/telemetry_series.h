@@ -17,10 +17,6 @@ struct LogFamily;
 /// holes that they left, and repeated lines are equal.
 std::optional<ClockRestart> find_clock_restart(const telemetry::SenderLog& sender);
 
-/// Finds the rows of a clock that was set back by seconds and passes the same times again, too few for a restart;
-/// std::nullopt without any.
-std::optional<telemetry::SkippedLines> find_clock_step(const telemetry::SenderLog& sender);
-
 /// Splits a log into its recordings (telemetry/recordings.h), each with its own clock; one that overlaps another stays
 /// with it.
 std::vector<telemetry::TelemetryLog> recordings_of(telemetry::TelemetryLog log);

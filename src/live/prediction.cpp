@@ -336,6 +336,12 @@ bool advance(const PredictionInput& input, double time_s, std::vector<ConstantLo
     return true;
 }
 
+/// Returns the ratio of the high end of the remaining energy's interval to its expectation.
+double high_energy_factor(const Prediction& prediction) {
+    const double expected_wh = prediction.remaining_energy.energy_wh;
+    return expected_wh > 0.0 ? prediction.interval.high / expected_wh : 1.0;
+}
+
 }  // namespace
 
 void require_interval(const mechanical::MechanicalModel& model, Phase phase, const std::string& file) {
@@ -453,11 +459,6 @@ std::vector<ConstantLoad> remaining_power(const Prediction& prediction, double f
     const double landing_j = units::joule_from_wh(prediction.landing.energy_wh);
     if (prediction.landing_s > 0.0) ahead.push_back({landing_j / prediction.landing_s * factor, prediction.landing_s});
     return ahead;
-}
-
-double high_energy_factor(const Prediction& prediction) {
-    const double expected_wh = prediction.remaining_energy.energy_wh;
-    return expected_wh > 0.0 ? prediction.interval.high / expected_wh : 1.0;
 }
 
 battery::BatteryState state_for(const BatteryNow& now, double nominal_ah, double capacity_ah, double more_percent) {

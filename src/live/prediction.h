@@ -127,9 +127,6 @@ std::vector<battery::ConstantLoad> remaining_power(const Prediction& prediction,
 /// Returns the energy of loads.
 double energy_j(const std::vector<battery::ConstantLoad>& loads);
 
-/// Returns the ratio of the high end of the remaining energy's interval to its expectation.
-double high_energy_factor(const Prediction& prediction);
-
 /// Returns the state of the battery if its capacity is another, and its initial charge was `more_percent` higher: from
 /// empty to full.
 battery::BatteryState state_for(const BatteryNow& now, double nominal_ah, double capacity_ah, double more_percent);

@@ -247,9 +247,4 @@ std::vector<IndexSpan> find_rests(const ResampledFlight& grid, const Segmentatio
     return rests;
 }
 
-double median_altitude_m(const ResampledFlight& grid, IndexSpan span) {
-    const auto altitude_m = part_of(grid.altitude_m, span);
-    return median_high({altitude_m.begin(), altitude_m.end()});
-}
-
 }  // namespace flightwatt::flight

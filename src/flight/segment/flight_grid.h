@@ -62,7 +62,4 @@ double idle_motor_percent(const ResampledFlight& grid, const SegmentationOptions
 /// Returns the minimum that the maximum of motor_percent has in a flight.
 double flight_motor_percent(const ResampledFlight& grid, const SegmentationOptions& options);
 
-/// Returns the median of grid.altitude_m over a span that is not empty.
-double median_altitude_m(const ResampledFlight& grid, IndexSpan span);
-
 }  // namespace flightwatt::flight

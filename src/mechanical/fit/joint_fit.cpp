@@ -81,8 +81,9 @@ FrequencyRange within(const FrequencyRange& range, double theta_rad, double reac
     return {std::max(range.low_rad, theta_rad - reach_rad), std::min(range.high_rad, theta_rad + reach_rad)};
 }
 
-}  // namespace
-
+/// Returns the theta within a range at which the flights' residual sum of squares, each with its own best coefficients,
+/// is least near a start: Levenberg and Marquardt's method (Ceres Solver) over theta, in which the coefficients follow by
+/// variable projection (Golub and Pereyra 1973, with Kaufman's Jacobian).
 Candidate least_squares_near(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                              double start_rad) {
     double theta_rad = std::clamp(start_rad, range.low_rad, range.high_rad);
@@ -99,6 +100,8 @@ Candidate least_squares_near(std::span<const PhaseSamples> flights, int order, c
     ceres::Solve(options, &problem, &summary);
     return {theta_rad, 2.0 * summary.final_cost};
 }
+
+}  // namespace
 
 double find_frequency(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
                       const FrequencyScan& scan) {

@@ -14,12 +14,6 @@
 /// samples' power is less its flight's mean.
 namespace flightwatt::mechanical {
 
-/// Returns the theta within a range at which the flights' residual sum of squares, each with its own best coefficients,
-/// is least near a start: Levenberg and Marquardt's method (Ceres Solver) over theta, in which the coefficients follow by
-/// variable projection (Golub and Pereyra 1973, with Kaufman's Jacobian).
-Candidate least_squares_near(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
-                             double start_rad);
-
 /// Returns the theta that the flights have in common: the least squares from the lowest minima of the scan, unless it is
 /// the subharmonic of a simpler one (resolve_subharmonic).
 double find_frequency(std::span<const PhaseSamples> flights, int order, const FrequencyRange& range,
