@@ -76,7 +76,7 @@ std::string in_words(const std::string& parameter) { return boost::replace_all_c
 std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     const auto axes = axes_of(mission.compute);
     if (axes.size() < 2) return std::nullopt;
-    QosMap map{axes[0], axes[1], {}, other_values(axes)};
+    QosMap map{axes[0], axes[1], {}};
     mission::SimulationOptions steps;
     steps.integration_s = 1.0;  // power is constant or smooth: error below 0.01 %
     for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);

@@ -26,9 +26,6 @@ struct QosMap {
     QosAxis x;
     QosAxis y;
     std::vector<double> soc_percent;  ///< at the nodes, x varies fastest; NaN if the battery fails
-    std::string others;               ///< values of further parameters; may be empty
-    /// Returns the final state of charge at node i of x and j of y.
-    double at(std::size_t i, std::size_t j) const { return soc_percent[j * x.nodes.size() + i]; }
 };
 
 /// Computes the map of a mission over its first two parameters; others have their maximum. std::nullopt for fewer than

@@ -4,6 +4,7 @@
 #include "mission/simulation.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ TEST(QosMap, IsThePapersGridAndEndsWhereTheMissionsEnd) {
     const auto at = [&](double fps, double key_bits) {
         const auto i = std::find(map->x.nodes.begin(), map->x.nodes.end(), fps) - map->x.nodes.begin();
         const auto j = std::find(map->y.nodes.begin(), map->y.nodes.end(), key_bits) - map->y.nodes.begin();
-        return map->at(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+        return map->soc_percent[static_cast<std::size_t>(j * std::ssize(map->x.nodes) + i)];
     };
     for (const auto* name : {"invariant-10fps-240bit", "invariant-5.8fps-32bit", "invariant-32fps-448bit"}) {
         const auto mission = paper_mission(name);
