@@ -1,5 +1,6 @@
 #include "base/temporary_folder.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 
 #include <cerrno>
@@ -18,6 +19,8 @@ TemporaryFolder::TemporaryFolder() {
         throw OutputError(fmt::format("{}: cannot make a folder: {}", pattern, std::strerror(errno)));
     path_ = pattern;
 }
+
+TemporaryFolder::TemporaryFolder(const std::filesystem::path& path) : path_(path) { make_directories(path_); }
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;

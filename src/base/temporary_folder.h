@@ -4,11 +4,13 @@
 
 namespace flightwatt {
 
-/// A new folder in TMPDIR (/tmp), which is removed with this object and all that is in it.
+/// A new folder, which is removed with this object and all that is in it. Throws OutputError if it cannot be made.
 class TemporaryFolder {
   public:
-    /// Throws OutputError if the folder cannot be made.
+    /// Makes one in TMPDIR (/tmp).
     TemporaryFolder();
+    /// Makes one at this path.
+    explicit TemporaryFolder(const std::filesystem::path& path);
     ~TemporaryFolder();
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -5,6 +5,7 @@
 #include "base/input_file.h"
 #include "base/number.h"
 #include "base/overwrite_guard.h"
+#include "base/temporary_folder.h"
 #include "report/figures/run_program.h"
 
 #include <algorithm>
@@ -16,25 +17,6 @@
 
 namespace flightwatt::report {
 namespace {
-
-/// A new folder for files in the making, which is removed with them.
-class ScratchFolder {
-  public:
-    explicit ScratchFolder(const std::filesystem::path& parent)
-        : folder_(parent / fmt::format(".figures-{}.tmp", ::getpid())) {
-        make_directories(folder_);
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    const std::filesystem::path& path() const { return folder_; }
-
-  private:
-    std::filesystem::path folder_;
-};
 
 /// Vega uses CSS pixels of 1/96 inch.
 constexpr double px_per_pt = 96.0 / 72.0;
@@ -57,7 +39,7 @@ FigureFiles write_figures(const Json& document, const std::filesystem::path& too
     const double width_px = layout.width_pt.value_or(0.0) * px_per_pt;
     const double height_px = layout.height_pt.value_or(landscape * layout.width_pt.value_or(0.0)) * px_per_pt;
     make_directories(folder);
-    const ScratchFolder scratch(folder);
+    const TemporaryFolder scratch(folder / fmt::format(".figures-{}.tmp", ::getpid()));
     write_file_atomically(scratch.path() / "document.json",
                           document.dump(-1, ' ', false, Json::error_handler_t::replace));
     FigureFiles files;
