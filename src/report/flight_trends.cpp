@@ -44,10 +44,6 @@ std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
     return names;
 }
 
-std::string title_of(const AircraftTrend& trend) {
-    return std::ranges::find(quantities, trend.quantity, &TrendQuantity::name)->title;
-}
-
 constexpr double seconds_per_day = answer::seconds_per_day;
 
 /// The slope as a line through the middle of the flights, with the ends of its interval; null without a trend.
@@ -81,7 +77,7 @@ Json trend_json(const AircraftTrend& trend) {
         values.push_back(value);
     }
     return {{"aircraft", trend.aircraft},
-            {"title", title_of(trend)},
+            {"title", std::ranges::find(quantities, trend.quantity, &TrendQuantity::name)->title},
             {"direction", trend_direction(trend)},
             {"change_in_30_days", slope ? Json(shown_days * slope->per_day) : Json()},
             {"change_in_30_days_interval_95",

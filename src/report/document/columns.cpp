@@ -12,21 +12,6 @@
 #include <boost/iostreams/filtering_stream.hpp>
 
 namespace flightwatt::report {
-namespace {
-
-std::string deflated(std::string_view text) {
-    namespace io = boost::iostreams;
-    constexpr int level = 4;  // two thirds of the time of 6, 4 % more bytes
-    std::string bytes;
-    io::filtering_ostream stream;
-    stream.push(io::zlib_compressor(io::zlib_params(level)));
-    stream.push(io::back_inserter(bytes));
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    stream.reset();  // flushes
-    return bytes;
-}
-
-}  // namespace
 
 Json rounded_json(double value, int decimals) {
     if (!std::isfinite(value)) return nullptr;
@@ -78,7 +63,17 @@ std::vector<std::size_t> downsample_m4(const std::vector<double>& time_s, const 
     return kept;
 }
 
-std::string deflated_base64(std::string_view text) { return base64(deflated(text)); }
+std::string deflated_base64(std::string_view text) {
+    namespace io = boost::iostreams;
+    constexpr int level = 4;  // two thirds of the time of 6, 4 % more bytes
+    std::string bytes;
+    io::filtering_ostream stream;
+    stream.push(io::zlib_compressor(io::zlib_params(level)));
+    stream.push(io::back_inserter(bytes));
+    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+    stream.reset();  // flushes
+    return base64(bytes);
+}
 
 std::string base64(const std::string& bytes) {
     using namespace boost::archive::iterators;
