@@ -50,7 +50,7 @@ missions/first.toml: | fits/model.toml fits/answer-pack.toml
 # label [Ah]; without it, that of the logs or an estimate is used. Exit code 3: a log was not used, the others were.
 fits/answer-pack.toml: fits/model.toml
 fits/model.toml: logs $(wildcard logs/*) $(firstword $(MAKEFILE_LIST))
-	flightwatt logs{} -o fits || { test $$? = 3 && test -f $@; }
+	flightwatt logs{} -o fits || {{ test $$? = 3 && test -f $@; }}
 )",
         capacity_ah ? fmt::format(" --capacity {}", *capacity_ah) : "");
 }
