@@ -115,9 +115,8 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     flights.back().facts.mean_power_w[flight::Phase::cruise] = fresh_w + 9.0;
     const auto json = trends_json(estimate_trends(flights), {}, tables);
     const auto power =
-        std::ranges::find_if(json["trends"], [](const Json& one) { return one["quantity"] == "cruise_power_w"; });
+        std::ranges::find_if(json["trends"], [](const Json& one) { return one["title"] == "cruise power [W]"; });
     ASSERT_NE(power, json["trends"].end());
-    EXPECT_EQ((*power)["median"], 42.0);
     EXPECT_NEAR((*power)["change_in_30_days"].get<double>(), 30.0, 1e-9);
     EXPECT_EQ((*power)["direction"], "rises");
     EXPECT_EQ((*power)["flights"]["value"].size(), 5U);
