@@ -211,7 +211,7 @@ int take_path(const cli::StageCall& call, flight::LoadOptions options, const std
     for (const auto& place : path.waypoints) {
         const bool is_first = place.duration_s == 0.0;
         csv.add(place.east_m, place.north_m, place.altitude_m - ground_m.value_or(0.0),
-                is_first ? std::nullopt : std::optional(place.airspeed_m_per_s),
+                is_first || place.airspeed_m_per_s == 0.0 ? std::nullopt : std::optional(place.airspeed_m_per_s),
                 is_first ? std::nullopt : std::optional(place.duration_s));
         duration_s += place.duration_s;
     }
@@ -262,7 +262,8 @@ Of a plan (flight plan of Paparazzi, .plan of QGroundControl, .waypoints of Ardu
 a mission flies (flight_plan and blocks, or waypoints, in [path]), its length, and what is not flown.
 With --path-from the path of a log's cruise instead, as waypoints for a mission (waypoints = "FILE" in
 [path]): a place about every 30 s, and between them as many as keep lines within 3 m of the track, with the
-airspeed on the way there and how long it took. Altitudes are above the ground, if the log shows where that is.)"};
+airspeed on the way there, of rotorcraft the speed over ground, and how long it took. Altitudes are above the
+ground, if the log shows where that is.)"};
     stage.next = [](const auto& call) {
         if (call.inputs.empty()) return "waypoints = \"{}\" in the [path] of a mission";
         if (!call.inputs.front().ends_with(".toml"))

@@ -64,6 +64,12 @@ double distance_from_line_m(const GroundTrack& track, std::size_t from, std::siz
     return std::hypot(x(at) - part * x(to), y(at) - part * y(to));
 }
 
+/// The straight way between two points of the track.
+double length_m(const GroundTrack& track, std::size_t from, std::size_t to) {
+    return std::hypot((track.first[to] - track.first[from]) * track.metres_per_first,
+                      (track.second[to] - track.second[from]) * track.metres_per_second);
+}
+
 /// The points between two that straight lines need to stay within tolerance_m of the track (Douglas and Peucker 1973),
 /// appended in order.
 void add_bends(const GroundTrack& track, std::size_t from, std::size_t to, std::vector<std::size_t>& bends) {
@@ -103,7 +109,7 @@ GroundTrack ground_track(const FlightData& data, bool is_geographic, double from
 
 FlownPath flown_path(const FlightData& data, const PhaseSpan& phase) {
     const auto edges_s = interval_edges(phase);
-    required_at(data, data.airspeed_m_per_s, "airspeed_m_per_s", {edges_s.front()});
+    if (!data.is_rotorcraft()) required_at(data, data.airspeed_m_per_s, "airspeed_m_per_s", {edges_s.front()});
     const auto altitude_m = required_at(data, data.altitude_m, "altitude_m", edges_s);
     FlownPath path;
     path.is_geographic = data.east_m.empty() && !data.latitude_deg.empty();
@@ -112,17 +118,21 @@ FlownPath flown_path(const FlightData& data, const PhaseSpan& phase) {
         const double duration_s = edges_s[part + 1] - start_s;
         const auto track = ground_track(data, path.is_geographic, start_s, edges_s[part + 1]);
         if (part == 0) path.waypoints.push_back({track.first.front(), track.second.front(), altitude_m.front()});
-        const double mean_m_per_s = mean_airspeed(data.airspeed_m_per_s, start_s, edges_s[part + 1]);
+        const double climb_m_per_s = (altitude_m[part + 1] - altitude_m[part]) / duration_s;
+        const double airspeed =
+            data.is_rotorcraft() ? 0.0 : mean_airspeed(data.airspeed_m_per_s, start_s, edges_s[part + 1]);
         std::vector<std::size_t> chosen;
         add_bends(track, 0, track.time_s.size() - 1, chosen);
         chosen.push_back(track.time_s.size() - 1);
-        double before_s = start_s;
+        std::size_t before = 0;
         for (const auto i : chosen) {
             const double done = (track.time_s[i] - start_s) / duration_s;
+            const double way_s = track.time_s[i] - track.time_s[before];
+            const double over_ground = std::hypot(length_m(track, before, i) / way_s, climb_m_per_s);
             path.waypoints.push_back({track.first[i], track.second[i],
-                                      std::lerp(altitude_m[part], altitude_m[part + 1], done),
-                                      track.time_s[i] - before_s, mean_m_per_s});
-            before_s = track.time_s[i];
+                                      std::lerp(altitude_m[part], altitude_m[part + 1], done), way_s,
+                                      data.is_rotorcraft() ? over_ground : airspeed});
+            before = i;
         }
     }
     if (path.is_geographic) return path;

@@ -91,6 +91,18 @@ TEST(FlownPath, IsInDegreesWhereTheLogIs) {
     EXPECT_DOUBLE_EQ(path.waypoints.front().east_m, 1000.0);
 }
 
+/// Missions fly a rotorcraft's speed as one over ground: with its airspeed, 12 m/s here, they would end too early.
+TEST(FlownPath, HasTheSpeedOfARotorcraftOverGround) {
+    auto series = eastward();
+    series.firmware = "rotorcraft";
+    const auto path = flown_path(select_tracks(series), cruise(20.0, 80.0));
+    ASSERT_EQ(path.waypoints.size(), 3U);
+    EXPECT_NEAR(path.waypoints[1].airspeed_m_per_s, std::hypot(10.0, 0.5), 1e-9);
+    std::erase_if(series.tracks, [](const Track& is) { return is.name == "airspeed_m_per_s"; });
+    EXPECT_NEAR(flown_path(select_tracks(series), cruise(20.0, 80.0)).waypoints[2].airspeed_m_per_s,
+                std::hypot(10.0, 0.5), 1e-9);
+}
+
 TEST(FlownPath, NeedsAirspeedAltitudeAndPosition) {
     for (const std::string missing : {"airspeed_m_per_s", "altitude_m", "north_m"}) {
         auto series = eastward();
