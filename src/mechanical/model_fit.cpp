@@ -81,10 +81,22 @@ CurveBand band_of(const ModelFit& fit, flight::Phase phase, const ErrorAnalysis&
     return band;
 }
 
+/// The time [s] of a metre by a regression of durations on heights with this error: at most that of the mean flight, and
+/// at least that of the quickest one, unless the regression surely is less: flights have parts that do not grow with
+/// the height, as the last metres of a landing.
+double bounded_s_per_m(double regression, double standard_error, double degrees_of_freedom, double quickest,
+                       double mean) {
+    constexpr double max_part_without_height = 0.5;
+    const double usual_least = std::min(quickest, mean);
+    if (!(regression > 0.0) || degrees_of_freedom < 1.0) return std::clamp(regression, usual_least, mean);
+    const double high = student_t_interval(regression, standard_error, degrees_of_freedom).high;
+    return std::clamp(regression, std::clamp(high, max_part_without_height * usual_least, usual_least), mean);
+}
+
 /// Heights of the flights that have one. Further height takes the time that the regression of the durations on the
-/// heights makes it, within the durations per height of the quickest flight and of the mean one.
+/// heights makes it, within bounds.
 std::optional<PhaseHeights> heights_of(const FittedPhase& fitted) {
-    double weights = 0.0, time_s = 0.0, covariance = 0.0, variance = 0.0;
+    double weights = 0.0, time_s = 0.0, covariance = 0.0, variance = 0.0, residuals = 0.0, flights = 0.0;
     PhaseHeights heights{0.0, std::numeric_limits<double>::infinity(), 0.0, 0.0};
     const auto for_each_height = [&](const auto& use) {
         for (std::size_t i = 0; i < fitted.samples.size(); ++i)
@@ -94,6 +106,7 @@ std::optional<PhaseHeights> heights_of(const FittedPhase& fitted) {
     double quickest_s_per_m = std::numeric_limits<double>::infinity();
     for_each_height([&](double weight, double height_m, double duration_s) {
         weights += weight;
+        flights += 1.0;
         heights.mean_m += weight * height_m;
         time_s += weight * duration_s;
         heights.low_m = std::min(heights.low_m, height_m);
@@ -109,7 +122,14 @@ std::optional<PhaseHeights> heights_of(const FittedPhase& fitted) {
     });
     const double mean_s_per_m = time_s / heights.mean_m;
     const double regression_s_per_m = variance > 0.0 ? covariance / variance : mean_s_per_m;
-    heights.m_per_s = 1.0 / std::clamp(regression_s_per_m, std::min(quickest_s_per_m, mean_s_per_m), mean_s_per_m);
+    for_each_height([&](double weight, double height_m, double duration_s) {
+        const double expected_s = time_s + regression_s_per_m * (height_m - heights.mean_m);
+        residuals += weight * std::pow(duration_s - expected_s, 2);
+    });
+    const double degrees_of_freedom = variance > 0.0 ? flights - 2.0 : 0.0;
+    const double standard_error = std::sqrt(residuals / std::max(degrees_of_freedom, 1.0) / std::max(variance, 1e-300));
+    heights.m_per_s =
+        1.0 / bounded_s_per_m(regression_s_per_m, standard_error, degrees_of_freedom, quickest_s_per_m, mean_s_per_m);
     return heights;
 }
 

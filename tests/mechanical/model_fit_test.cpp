@@ -75,7 +75,10 @@ TEST(ModelFit, FindsTheRateOfFurtherHeight) {
     EXPECT_NEAR(heights.mean_m, 50.0, 1e-9);
     EXPECT_EQ(heights.low_m, 30.0);
     EXPECT_EQ(heights.high_m, 70.0);
-    EXPECT_NEAR(heights.m_per_s, 70.0 / 32.0, 1e-9) << "no faster than the quickest flight from the ground";
+    EXPECT_NEAR(heights.m_per_s, 20.0 / 6.0, 1e-6) << "11 s do not grow with the height";
+    EXPECT_NEAR(heights_of({20.0, 26.0, 38.0}).m_per_s, 50.0 / 26.0, 1e-6)
+        << "so few flights show no rate above that of the quickest from the ground";
+    EXPECT_NEAR(heights_of({30.0, 31.0, 32.0}).m_per_s, 2.0 * 70.0 / 32.0, 1e-6) << "no faster than twice that";
     EXPECT_NEAR(heights_of({15.0, 25.0, 35.0}).m_per_s, 2.0, 1e-9);
     EXPECT_NEAR(heights_of({35.0, 25.0, 15.0}).m_per_s, 70.0 / 15.0, 1e-9) << "times that fall with the height";
     EXPECT_NEAR(heights_of({10.0, 25.0, 50.0}).m_per_s, 50.0 / (85.0 / 3.0), 1e-9) << "no slower than their mean";
