@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,8 +18,9 @@ namespace {
 constexpr double max_cut_deg = 120.0;  // of a corner: beyond, the arc would pass more than a radius before it
 constexpr double straight_deg = 0.1;   // of a corner: below, the path is straight
 constexpr double same_place_m = 1e-3;
-// As autopilots of multicopters have them by default: WPNAV_ACCEL and WPNAV_RADIUS of ArduPilot.
+// As autopilots of multicopters have them by default: WPNAV_ACCEL, WPNAV_JERK and WPNAV_RADIUS of ArduPilot.
 constexpr double acceleration_m_per_s2 = 2.5;
+constexpr double jerk_m_per_s3 = 1.0;
 constexpr double corner_radius_m = 2.0;
 
 /// The change of course [degrees], more than 0 to the right.
@@ -298,6 +300,35 @@ class WingTurns {
     std::vector<std::size_t> widened_;
 };
 
+/// What a rotorcraft takes to change its speed.
+struct SpeedChange {
+    double time_s = 0.0;
+    double way_m = 0.0;
+};
+
+/// Between a slower speed and a faster one. From and to a stop, the acceleration grows and falls by the jerk; at a
+/// corner the changes before and behind it overlap, so that it costs about as much as with the acceleration all along.
+SpeedChange speed_change(double slow, double fast) {
+    if (slow > 0.0)
+        return {(fast - slow) / acceleration_m_per_s2, (fast * fast - slow * slow) / (2.0 * acceleration_m_per_s2)};
+    const double growth_s = acceleration_m_per_s2 / jerk_m_per_s3;
+    const double time_s = fast < acceleration_m_per_s2 * growth_s ? 2.0 * std::sqrt(fast / jerk_m_per_s3)
+                                                                  : fast / acceleration_m_per_s2 + growth_s;
+    return {time_s, fast / 2.0 * time_s};
+}
+
+/// The greatest speed up to `most` whose changes fit on a way; `least` if none does.
+template <typename ChangingWay>
+double fitting_speed(double least, double most, double way_m, const ChangingWay& changing_m) {
+    if (changing_m(most) <= way_m) return most;
+    constexpr int halvings = 50;
+    for (int i = 0; i < halvings; ++i) {
+        const double speed = std::midpoint(least, most);
+        (changing_m(speed) <= way_m ? least : most) = speed;
+    }
+    return least;
+}
+
 /// Adds the times that a rotorcraft loses at corners.
 class RotorcraftTurns {
   public:
@@ -369,9 +400,9 @@ class RotorcraftTurns {
             }
         }
         const auto reach = [&](std::size_t i, std::size_t from, std::size_t to) {
-            const double gained = 2.0 * acceleration_m_per_s2 * length_m(elements_[i].shape);
-            if (drawn_[i].has_course)
-                speeds[to] = std::min(speeds[to], std::sqrt(speeds[from] * speeds[from] + gained));
+            if (!drawn_[i].has_course || speeds[to] <= speeds[from]) return;
+            speeds[to] = fitting_speed(speeds[from], speeds[to], length_m(elements_[i].shape),
+                                       [&](double speed) { return speed_change(speeds[from], speed).way_m; });
         };
         for (std::size_t i = 0; i < count; ++i) reach(i, i, i + 1);
         for (std::size_t i = count; i-- > 0;) reach(i, i + 1, i);
@@ -382,11 +413,12 @@ class RotorcraftTurns {
     double lost_s(std::size_t i, double begin, double end) const {
         const double cruise = speed(i);
         const double way_m = length_m(elements_[i].shape);
-        const double squares = begin * begin + end * end;
-        const double peak = std::min(cruise, std::sqrt(acceleration_m_per_s2 * way_m + squares / 2.0));
-        const double changing_m = (2.0 * peak * peak - squares) / (2.0 * acceleration_m_per_s2);
-        const double changing_s = (2.0 * peak - begin - end) / acceleration_m_per_s2;
-        return std::max(0.0, changing_s - std::min(changing_m, way_m) / cruise);
+        const double peak = fitting_speed(std::max(begin, end), cruise, way_m, [&](double speed) {
+            return speed_change(begin, speed).way_m + speed_change(end, speed).way_m;
+        });
+        const auto from = speed_change(begin, peak);
+        const auto to = speed_change(end, peak);
+        return std::max(0.0, from.time_s + to.time_s - std::min(from.way_m + to.way_m, way_m) / cruise);
     }
 
     std::vector<PathElement> elements_;
