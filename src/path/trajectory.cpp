@@ -61,7 +61,12 @@ class PathFlight {
     double airspeed() const { return element_->airspeed_m_per_s; }
     double airspeed(double climb_m_per_s) const {
         const auto* hold = std::get_if<Hold>(&element_->shape);
-        return hold != nullptr && hold->hovers ? std::hypot(wind_.speed_m_per_s, climb_m_per_s) : airspeed();
+        if (hold != nullptr && hold->hovers) return std::hypot(wind_.speed_m_per_s, climb_m_per_s);
+        const bool is_over_ground = hold != nullptr && hold->over_ground && hold->over_ground->length_m > 0.0;
+        if (!is_over_ground || !keeps_ground_speed()) return airspeed();
+        const auto& leg = *hold->over_ground;
+        const GroundTrack track(leg, wind_, true);
+        return std::hypot(track.airspeed_m_per_s(0.0, leg.length_m, leg.length_m / hold->time_s), climb_m_per_s);
     }
     bool keeps_ground_speed() const { return element_->keeps_ground_speed && wind_.speed_m_per_s > 0.0; }
     double sign() const { return element_->altitude_change_m < 0.0 ? -1.0 : 1.0; }

@@ -92,6 +92,11 @@ TEST(Trajectory, KeptGroundSpeedsChangeTheAirspeedInsteadOfTheTime) {
     const auto climbs = compute_trajectory({{over_ground(climbing(element_of(Leg{400.0, 180.0}, 5.0), 300.0))}}, wind);
     EXPECT_NEAR(climbs.duration_s, 100.0, 1e-6) << "4 m/s over ground and 3 m/s up";
     EXPECT_NEAR(climbs.pieces.front().motion.airspeed_m_per_s, std::hypot(10.0, 3.0), 1e-6);
+    // Against the wind, 400 m in a measured time of 100 s.
+    const auto measured =
+        compute_trajectory({{over_ground(element_of(Hold{100.0, Leg{400.0, 180.0}, false}, 4.0))}}, wind);
+    EXPECT_NEAR(measured.duration_s, 100.0, 1e-9);
+    EXPECT_NEAR(measured.pieces.front().motion.airspeed_m_per_s, 10.0, 1e-9);
 }
 
 /// Around whole circles the mean square of the airspeed is that of both speeds, over parts what small steps give.
