@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "flight/select/device_check.h"
 #include "flight/select/device_sum.h"
 #include "flight/select/outliers.h"
 
@@ -35,6 +36,8 @@ constexpr double same_voltage = 0.02;
 constexpr double same_current = 0.03;
 constexpr double same_current_by_escs = 0.15;  // these do not measure the electronics
 constexpr double nearly_all = 0.95;            // of the samples
+constexpr double failed_part = 0.8;            // of the other sensor's mean power: with less it failed in flight
+constexpr double suspect_part = 0.04;          // of the power: could hide some percent of the energy
 constexpr std::size_t enough_samples = 10;
 
 /// A battery monitor as logged.
@@ -153,11 +156,35 @@ bool agree(const Track& track, const Track& other, double within) {
     return compared >= enough_samples && static_cast<double>(equal) >= nearly_all * static_cast<double>(compared);
 }
 
-bool see_one_pack(const Monitor& monitor, const Monitor& other) {
-    if (monitor.stated == smart_pack_monitor && other.stated == smart_pack_monitor) return false;
+/// Whether two tracks of a pack agree with those of another monitor, where that one measures.
+bool agrees_with(const Monitor& monitor, const Monitor& other) {
     const bool by_escs = monitor.stated == escs_monitor || other.stated == escs_monitor;
     return agree(monitor.voltage_v, other.voltage_v, same_voltage) &&
            agree(monitor.current_a, other.current_a, by_escs ? same_current_by_escs : same_current);
+}
+
+bool are_smart(const Monitor& monitor, const Monitor& other) {
+    return monitor.stated == smart_pack_monitor && other.stated == smart_pack_monitor;
+}
+
+/// Excludes one of two monitors that measure one pack: the one that fails in flight, else the second.
+void exclude_second_sensor(Monitor& first, Monitor& second) {
+    if (are_smart(first, second)) return;
+    const bool agrees = agrees_with(second, first);
+    const bool agrees_in_part = agrees_with(first, second);
+    const auto fails = [](const Monitor& monitor, const Monitor& other) {
+        return std::abs(monitor.mean_w) < failed_part * std::abs(other.mean_w);
+    };
+    constexpr auto same =
+        "voltage and current of {} are the same {}: both measure one pack, whose energy would be counted twice";
+    constexpr auto always = "at nearly every sample";
+    constexpr auto in_part = "wherever this one measures, which is not throughout";
+    if (agrees && !agrees_in_part && fails(first, second))
+        first.exclusion = fmt::format(same, second.name, in_part);
+    else if (agrees)
+        second.exclusion = fmt::format(same, first.name, always);
+    else if (agrees_in_part && fails(second, first))
+        second.exclusion = fmt::format(same, first.name, in_part);
 }
 
 /// Whether a monitor's power is that of a set of two or more others.
@@ -192,11 +219,7 @@ void exclude(std::vector<Monitor>& monitors) {
     }
     for (std::size_t m = 1; m < monitors.size(); ++m) {
         for (std::size_t other = 0; other < m && monitors[m].exclusion.empty(); ++other)
-            if (monitors[other].exclusion.empty() && see_one_pack(monitors[m], monitors[other]))
-                monitors[m].exclusion = fmt::format(
-                    "voltage and current of {} are the same at nearly every sample: both measure one pack, whose energy "
-                    "would be counted twice",
-                    monitors[other].name);
+            if (monitors[other].exclusion.empty()) exclude_second_sensor(monitors[other], monitors[m]);
     }
 }
 
@@ -316,6 +339,40 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
     return circuit;
 }
 
+/// Packs that stop counting in flight, or that are not what their monitors say; of VTOLs, whose lift motors may have a
+/// pack of their own that rests, without the former.
+void add_suspicions(const FlightSeries& series, const std::vector<Monitor>& monitors,
+                    const std::vector<std::vector<const Monitor*>>& circuits, std::vector<std::string>& notes) {
+    const bool is_vtol = std::ranges::any_of(
+        series.tracks, [](const Track& track) { return track.name == "vtol_state" && !track.empty(); });
+    for (const auto& packs : circuits)
+        if (packs.size() > 1 && !is_vtol)
+            std::ranges::move(
+                find_suspect_packs(devices_of(packs, &Monitor::power_w), devices_of(packs, &Monitor::current_a)),
+                std::back_inserter(notes));
+    double all_w = 0.0;
+    std::vector<const Monitor*> counted;
+    for (const auto& packs : circuits) counted.insert(counted.end(), packs.begin(), packs.end());
+    for (const auto* monitor : counted) all_w += monitor->mean_w;
+    for (const auto& monitor : monitors) {
+        if (!monitor.exclusion.empty() || counted.size() < 2) continue;
+        if (monitor.mean_w < -suspect_part * std::abs(all_w))
+            notes.push_back(
+                fmt::format("{} has a negative current, so that the sum over the batteries is smaller: is it "
+                            "charged in flight, or is its sensor reversed?",
+                            monitor.text()));
+        for (const auto* other : counted) {
+            if (other == &monitor) break;
+            if (!are_smart(monitor, *other) && agree(monitor.current_a, other->current_a, same_current))
+                notes.push_back(fmt::format(
+                    "{} and {} have the same current at nearly every sample, though their voltages differ: if "
+                    "one pack feeds both (with a wrong scale of a voltage, or a tap of its cells), its energy is counted "
+                    "twice",
+                    other->text(), monitor.text()));
+        }
+    }
+}
+
 void describe_choice(const std::vector<Monitor>& monitors, BatteryTracks& found) {
     std::vector<std::string> used;
     for (const auto& monitor : monitors)
@@ -352,7 +409,8 @@ std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
     exclude(monitors);
     std::vector<Device> powers;
     std::vector<const Monitor*> all;
-    for (const auto& packs : packs_by_circuit(monitors)) {
+    const auto circuits = packs_by_circuit(monitors);
+    for (const auto& packs : circuits) {
         all.insert(all.end(), packs.begin(), packs.end());
         found.circuits.push_back(circuit_of(packs, found.power_w));
         powers.push_back({found.circuits.back().name, "", found.circuits.back().power_w, {}});
@@ -363,6 +421,7 @@ std::optional<BatteryTracks> select_batteries(const FlightSeries& series) {
     ChosenTrack unused;
     static_cast<Track&>(found.energy_wh) = counter_of(all, &Monitor::energy_wh, unused);
     describe_choice(monitors, found);
+    add_suspicions(series, monitors, circuits, found.power_w.notes);
     return found;
 }
 

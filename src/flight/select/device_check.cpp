@@ -38,6 +38,12 @@ struct DeviceTable {
     double energy_j(const std::vector<double>& watts, double before_j = 0.0) const {
         return std::transform_reduce(watts.begin(), watts.end(), step_s.begin(), before_j);
     }
+
+    double all_j() const {
+        double sum_j = 0.0;
+        for (const auto& watts : power_w) sum_j = energy_j(watts, sum_j);
+        return sum_j;
+    }
 };
 
 DeviceTable table_of(const std::vector<Device>& devices) {
@@ -60,7 +66,17 @@ struct DeviceComparison {
     std::vector<bool> is_stuck;
 };
 
-DeviceComparison compare_with_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported) {
+/// Equal reports in a row that show a pack's sensor to be stuck: more where it is slower than the log.
+std::size_t stuck_reports_of_pack(const Track& track) {
+    constexpr std::size_t stuck_updates = 4;
+    std::vector<double> lengths;
+    for (const auto& run : runs_of_equal(track.value, 1)) lengths.push_back(static_cast<double>(run.size()));
+    if (lengths.size() < 2) return stuck_reports;
+    return std::max(stuck_reports, stuck_updates * static_cast<std::size_t>(median_high(std::move(lengths))));
+}
+
+DeviceComparison compare_with_others(const DeviceTable& table, std::size_t device, const std::vector<Track>& reported,
+                                     bool are_packs = false) {
     DeviceComparison compared{table.power_w[device], {}, {}, std::vector<bool>(table.time_s.size(), false)};
     for (std::size_t i = 0; i < table.time_s.size(); ++i) {
         std::vector<double> others;
@@ -70,7 +86,7 @@ DeviceComparison compare_with_others(const DeviceTable& table, std::size_t devic
         compared.median_w.push_back(median(std::move(others)));
     }
     for (const auto& track : reported) {
-        for (const auto& run : runs_of_equal(track.value, stuck_reports)) {
+        for (const auto& run : runs_of_equal(track.value, are_packs ? stuck_reports_of_pack(track) : stuck_reports)) {
             const auto first = std::ranges::lower_bound(table.time_s, track.time_s[run.begin]) - table.time_s.begin();
             const auto last = std::ranges::upper_bound(table.time_s, track.time_s[run.end - 1]) - table.time_s.begin();
             std::fill(compared.is_stuck.begin() + first, compared.is_stuck.begin() + std::max(first, last), true);
@@ -167,13 +183,25 @@ std::string missing_ids(const std::vector<Device>& devices, std::string_view mes
                        *ids.upper_bound(missing.back()), missing.size() > 1 ? "their power" : "its power");
 }
 
-std::string describe(const SuspectInterval& suspect, std::string_view message, const std::string& id, double all_j) {
+std::string describe(const SuspectInterval& suspect, const std::string& name, double all_j) {
     const bool is_off = suspect.own_j < off_fraction * suspect.expected_j;
     return fmt::format(
-        "{} {} reports {} ({:.2f} W) for {:.0f} s from {:.1f} to {:.1f} s, unlike the others: is it off, or its sensor "
+        "{} reports {} ({:.2f} W) for {:.0f} s from {:.1f} to {:.1f} s, unlike the others: is it off, or its sensor "
         "damaged? With their power the energy would change by {:+.0f} %",
-        message, id, is_off ? "almost no power" : "a constant value", suspect.own_j / suspect.lasts_s, suspect.lasts_s,
+        name, is_off ? "almost no power" : "a constant value", suspect.own_j / suspect.lasts_s, suspect.lasts_s,
         suspect.from_s, suspect.to_s, units::percentage(suspect.expected_j - suspect.own_j, all_j));
+}
+
+bool is_suspect(const SuspectInterval& suspect, double all_j) {
+    return std::abs(suspect.expected_j - suspect.own_j) > suspect_energy_fraction * std::abs(all_j);
+}
+
+/// The power of a device, and its current if it reports one.
+std::vector<Track> reported_by(const Device& device, const std::vector<Device>& currents) {
+    std::vector<Track> reported{device.track};
+    const auto current = std::ranges::find(currents, device.name, &Device::name);
+    if (current != currents.end()) reported.push_back(current->track);
+    return reported;
 }
 
 }  // namespace
@@ -192,19 +220,31 @@ std::vector<std::string> find_suspect_devices(const FlightSeries& series, std::s
     }
     const auto currents = devices_of(series, "current_a", message);
     const auto table = table_of(devices);
-    double all_j = 0.0;
-    for (const auto& power_w : table.power_w) all_j = table.energy_j(power_w, all_j);
+    const double all_j = table.all_j();
     for (std::size_t d = 0; d < devices.size(); ++d) {
-        std::vector<Track> reported{devices[d].track};
-        const auto current = std::ranges::find(currents, devices[d].id, &Device::id);
-        if (current != currents.end()) reported.push_back(current->track);
+        const auto reported = reported_by(devices[d], currents);
         const auto compared = compare_with_others(table, d, reported);
         const auto suspect =
             message == "ESC" ? check_motor(table, compared) : check_circuit(table, compared, reported, all_j);
-        if (std::abs(suspect.expected_j - suspect.own_j) > suspect_energy_fraction * std::abs(all_j))
-            findings.push_back(describe(suspect, message, devices[d].id, all_j));
+        if (is_suspect(suspect, all_j)) findings.push_back(describe(suspect, devices[d].name, all_j));
         if (const auto finding = check_share(table, compared, all_j); !finding.empty())
             findings.push_back(fmt::format("{} {} {}", message, devices[d].id, finding));
+    }
+    return findings;
+}
+
+std::vector<std::string> find_suspect_packs(std::vector<Device> powers, const std::vector<Device>& currents) {
+    std::vector<std::string> findings;
+    std::ranges::stable_sort(powers, std::ranges::greater(), [](const Device& d) { return d.track.time_s.size(); });
+    if (powers.size() < 2 || powers.front().track.time_s.size() < stuck_reports) return findings;
+    const auto table = table_of(powers);
+    const double all_j = table.all_j();
+    for (std::size_t d = 0; d < powers.size(); ++d) {
+        if (is_constant(powers[d].track)) continue;  // a steady load
+        const auto reported = reported_by(powers[d], currents);
+        const auto compared = compare_with_others(table, d, reported, true);
+        const auto suspect = check_circuit(table, compared, reported, all_j);
+        if (is_suspect(suspect, all_j)) findings.push_back(describe(suspect, powers[d].name, all_j));
     }
     return findings;
 }

@@ -52,6 +52,14 @@ FlightSeries series_of(const std::vector<Logged>& monitors) {
     return series;
 }
 
+/// Sets the electrical tracks of a monitor to 0 from a sample on; `also_voltage`: of all.
+FlightSeries failing_from(std::size_t sample, const std::string& device, bool also_voltage, FlightSeries series) {
+    for (auto& track : series.tracks)
+        if (track.device == device && (also_voltage || track.name != "voltage_v"))
+            for (auto i = sample; i < track.value.size() && track.name != "charge_ah"; ++i) track.value[i] = 0.0;
+    return series;
+}
+
 std::function<double(double)> times(double part) {
     return [part](double amperes) { return part * amperes; };
 }
@@ -172,6 +180,43 @@ TEST(Circuits, CountAPackThatTwoMonitorsSeeOnceAndSaySo) {
     auto by_escs = second(0.88, 16.0);
     by_escs.monitor_kinds["1"] = escs_monitor;
     EXPECT_NEAR(first_w(by_escs), 16.0, 1e-9);
+}
+
+TEST(Circuits, CountTheSensorOfAPackThatDoesNotFailInFlight) {
+    const auto both = series_of({{"BAT", "0", 16.0, times(1.0)}, {"BAT", "1", 16.0, times(1.01)}});
+    for (const bool also_voltage : {false, true}) {
+        const auto second = select_tracks(failing_from(60, "1", also_voltage, both));
+        EXPECT_NEAR(second.power_w.value.at(0), 16.0, 1e-9) << "not twice, up to the failure";
+        EXPECT_THAT(second.power_w.notes, Contains(HasSubstr("BAT 0 are the same wherever this one measures")));
+        const auto first = select_tracks(failing_from(60, "0", also_voltage, both));
+        EXPECT_NEAR(first.power_w.value.at(0), 16.16, 1e-9);
+        EXPECT_GT(first.power_w.value.back(), 100.0) << "not 0, from the failure on";
+        EXPECT_THAT(first.power_w.notes, Contains(HasSubstr("the power is that of BAT 1")));
+    }
+}
+
+TEST(Circuits, TellOfAPackWhoseSensorFailsInFlight) {
+    const auto both = series_of({{"BAT", "0", 16.0, times(0.8)}, {"BAT", "1", 16.0, times(0.2)}});
+    const auto is_told = Contains(HasSubstr("BAT 1 reports almost no power"));
+    EXPECT_THAT(select_tracks(both).power_w.notes, testing::IsEmpty());
+    auto failing = failing_from(45, "1", false, both);
+    EXPECT_THAT(select_tracks(failing).power_w.notes, is_told);
+    failing.tracks.push_back({.name = "vtol_state", .source = "QTUN.ThO", .time_s = {0.0, 45.0}, .value = {3.0, 4.0}});
+    EXPECT_THAT(select_tracks(failing).power_w.notes, Not(is_told)) << "a pack of the lift motors rests on the wing";
+}
+
+TEST(Circuits, TellOfAPackWhoseSensorIsReversed) {
+    const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(0.8)}, {"BAT", "1", 16.0, times(-0.2)}}));
+    EXPECT_THAT(data.power_w.notes, ElementsAre(HasSubstr("is it charged in flight, or is its sensor reversed?")));
+}
+
+TEST(Circuits, TellOfOneCurrentAtTwoVoltages) {
+    const auto notes = [](double part) {
+        return select_tracks(series_of({{"BAT", "0", 50.0, times(1.0)}, {"BAT", "1", 25.0, times(part)}}))
+            .power_w.notes;
+    };
+    EXPECT_THAT(notes(1.0), ElementsAre(HasSubstr("have the same current at nearly every sample")));
+    EXPECT_THAT(notes(0.5), testing::IsEmpty());
 }
 
 TEST(Circuits, KeepTheOnlyMonitorWhoseSensorIsReversed) {
