@@ -17,7 +17,7 @@
 namespace flightwatt::flight {
 namespace {
 
-constexpr double is_true = 1.0;  // of flags: an airspeed sensor is used, and is healthy
+constexpr double is_true = 1.0;  // of flags: an airspeed sensor is used, a sensor is healthy
 
 /// 1 and 0 of events that switch a state on and off.
 template <int on, int off>
@@ -256,6 +256,7 @@ const LogFamily& ardupilot_family() {
     static const LogFamily family{ardupilot_tracks(),
                                   {{"BAT", "Instance"},
                                    {"BAT", "Inst"},
+                                   {"BAT", nullptr, "H", is_true},
                                    {"ESC", "Instance"},
                                    {"BARO", "I"},
                                    {"GPS", "I", "Status", min_fix},

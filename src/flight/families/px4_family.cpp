@@ -191,6 +191,8 @@ void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
     const auto* serial = status->column("serial_number");
     const auto* cycles = status->column("cycle_count");
     const auto* cells = status->column("cell_count");
+    const auto* source = status->column("source");
+    constexpr double escs = 2.0;
     std::set<double> seen;
     std::vector<double> serials;
     for (std::size_t row = 0; row < status->time_s.size(); ++row) {
@@ -198,6 +200,8 @@ void add_packs(const telemetry::SenderLog& sender, FlightSeries& series) {
         if (!seen.insert(id).second) continue;
         if (cells != nullptr && cells->values[row] > 0.0)
             series.monitor_cells.insert_or_assign(fmt::format("{}", id), cells->values[row]);
+        if (source != nullptr && source->values[row] == escs)
+            series.monitor_kinds[fmt::format("{}", id)] = escs_monitor;
         if (serial != nullptr) serials.push_back(serial->values[row]);
         if (cycles != nullptr && is_stated(cycles->values[row]))
             series.pack_cycles = std::max(series.pack_cycles.value_or(0.0), cycles->values[row]);
@@ -242,7 +246,7 @@ const LogFamily& px4_family() {
                                    {"vehicle_local_position", "multi_id"}},
                                   describe_px4,
                                   {{"vehicle_status", {"vehicle_type", "is_rotary_wing", "is_vtol"}},
-                                   {"battery_status", {"serial_number", "cycle_count", "cell_count"}}}};
+                                   {"battery_status", {"serial_number", "cycle_count", "cell_count", "source"}}}};
     return family;
 }
 

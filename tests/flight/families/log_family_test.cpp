@@ -289,6 +289,23 @@ TEST(LogFamily, SmartBatteriesOfPx4StateTheirSerialNumbers) {
     EXPECT_FALSE(unknown.pack_cycles);
 }
 
+TEST(LogFamily, BatteriesOfPx4ByEscsMeasureThePackOfAnother) {
+    auto log =
+        test::ulog_header() +
+        test::ulog_message('F', "battery_status:uint64_t timestamp;float voltage_v;float current_a;uint8_t source;") +
+        test::ulog_subscription(0, 7, "battery_status") + test::ulog_subscription(1, 8, "battery_status");
+    for (unsigned i = 0; i < 20; ++i)
+        for (const std::uint16_t topic : {7, 8})
+            log += test::ulog_message(
+                'D', test::little_endian(topic) +
+                         test::little_endian(std::uint64_t{10'000'000} + std::uint64_t{200'000} * i + topic) +
+                         test::little_endian(22.0F) +
+                         test::little_endian((topic == 7 ? 1.0F : 0.9F) * (10.0F + static_cast<float>(i % 3))) +
+                         std::string(1, topic == 7 ? '\0' : '\2'));
+    const auto power = power_track(series_of(log, "x.ulg"));
+    EXPECT_NEAR(power.value.at(0), 220.0, 1e-6) << "not that of two packs";
+}
+
 TEST(LogFamily, SerialNumbersOfArduPilotAreThoseOfSmbusMonitors) {
     const auto serial_of = [](float monitor, float serial) {
         auto log = test::dataflash_log(20) + test::dataflash_format(9, "PARM", "QNf", "TimeUS,Name,Value", 28);
@@ -378,6 +395,18 @@ TEST(LogFamily, AirspeedIsThatOfAHealthySensorInUse) {
     sensor(22, 5.0F, 1, 0);
     sensor(23, 16.0F, 1, 1);
     EXPECT_THAT(select_track(series_of(log), "airspeed_m_per_s").value, testing::ElementsAre(15, 16));
+}
+
+TEST(Batteries, OfArduPilotThatAreNotHealthyRepeatTheirLastValues) {
+    auto log = test::dataflash_format(3, "MSG", "QZ", "TimeUS,Message", 72) +
+               test::dataflash_text(3, "ArduCopter V4.6.0 (2cb4b85a)") +
+               test::dataflash_format(4, "BAT", "QBffB", "TimeUS,Inst,Volt,Curr,H", 18);
+    for (unsigned i = 0; i < 40; ++i)
+        log += test::dataflash_message(4, test::little_endian(std::uint64_t{20'000'000} + std::uint64_t{100'000} * i) +
+                                              test::little_endian(std::uint8_t{0}) + test::little_endian(16.0F) +
+                                              test::little_endian(10.0F + 0.1F * static_cast<float>(std::min(i, 20U))) +
+                                              test::little_endian(static_cast<std::uint8_t>(i < 20 ? 1 : 0)));
+    EXPECT_EQ(power_track(series_of(log)).time_s.size(), 20U);
 }
 
 TEST(Batteries, InParallelAreSummed) {
