@@ -112,13 +112,25 @@ void use_escs(const FlightSeries& series, std::string reason, bool is_their_pack
     data.stated_capacity_ah.reset();
 }
 
+/// Batteries give what the ESCs of a multirotor draw, and that of the electronics, which rises little with it.
+void check_excess(const FlightSeries& series, const std::vector<Device>& escs, FlightData& data) {
+    const bool are_all = series.motors && static_cast<double>(escs.size()) >= *series.motors;
+    if (!are_all || series.firmware != "rotorcraft") return;  // another one's pusher may have no telemetry
+    const auto count = escs.size();
+    if (const auto ratio = rise_beyond_escs(data.power_w, sum_over_devices(escs).track))
+        data.power_w.notes.push_back(fmt::format(
+            "under load {} gives {:.2f} times the power of all {} ESCs: check the scales of both; the power "
+            "is that of the former, perhaps too large",
+            data.circuits.size() == 1 ? data.circuits.front().name : data.power_w.source, *ratio, count));
+}
+
 /// ESCs draw what the batteries give: a source that gives less is no measurement of their supply.
 void check_supply(const FlightSeries& series, FlightData& data) {
     if (data.power_w.empty() && !data.circuits.empty()) return use_escs(series, "", true, data);
     if (data.power_w.source.starts_with("ESC")) return;
-    const auto shortfall =
-        compare_with_escs(data.power_w, sum_over_devices(devices_of(series, "power_w", "ESC")).track);
-    if (!shortfall) return;
+    const auto escs = devices_of(series, "power_w", "ESC");
+    const auto shortfall = compare_with_escs(data.power_w, sum_over_devices(escs).track);
+    if (!shortfall) return check_excess(series, escs, data);
     const auto supply = data.circuits.size() == 1 ? data.circuits.front().name : data.power_w.source;
     const auto finding = fmt::format("the ESCs draw {:.0f} W on average, but {} gives {:.0f} W", shortfall->escs_w,
                                      supply, shortfall->supply_w);

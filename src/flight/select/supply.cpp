@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace flightwatt::flight {
@@ -51,6 +52,13 @@ PowerMeans means_where(const std::vector<PowerMeans>& blocks, const Counts& coun
     return means;
 }
 
+/// The means at rest and under load, by the power of the ESCs.
+std::pair<PowerMeans, PowerMeans> idle_and_loaded(const std::vector<PowerMeans>& blocks) {
+    const double largest_w = std::ranges::max(blocks, {}, &PowerMeans::escs_w).escs_w;
+    return {means_where(blocks, [&](double watts) { return watts <= idle_part * largest_w; }),
+            means_where(blocks, [&](double watts) { return watts >= loaded_part * largest_w; })};
+}
+
 }  // namespace
 
 std::optional<SupplyShortfall> compare_with_escs(const Track& supply_w, const Track& escs_w) {
@@ -59,11 +67,20 @@ std::optional<SupplyShortfall> compare_with_escs(const Track& supply_w, const Tr
     if (blocks.size() < enough_blocks) return std::nullopt;
     const auto all = means_where(blocks, [](double) { return true; });
     if (all.escs_w <= max_ratio * all.supply_w || all.escs_w <= 0.0) return std::nullopt;
-    const double largest_w = std::ranges::max(blocks, {}, &PowerMeans::escs_w).escs_w;
-    const auto loaded = means_where(blocks, [&](double watts) { return watts >= loaded_part * largest_w; });
-    const auto idle = means_where(blocks, [&](double watts) { return watts <= idle_part * largest_w; });
+    const auto [idle, loaded] = idle_and_loaded(blocks);
     const bool is_other = idle.count > 0 && loaded.supply_w - idle.supply_w < min_rise * (loaded.escs_w - idle.escs_w);
     return SupplyShortfall{all.supply_w, all.escs_w, is_other};
+}
+
+std::optional<double> rise_beyond_escs(const Track& supply_w, const Track& escs_w) {
+    if (supply_w.empty() || escs_w.empty()) return std::nullopt;
+    const auto blocks = block_means(supply_w, escs_w);
+    if (blocks.size() < enough_blocks) return std::nullopt;
+    const auto [idle, loaded] = idle_and_loaded(blocks);
+    const double escs_rise_w = loaded.escs_w - idle.escs_w;
+    if (idle.count == 0 || !(escs_rise_w > 0.0)) return std::nullopt;
+    const double ratio = (loaded.supply_w - idle.supply_w) / escs_rise_w;
+    return ratio > max_ratio && ratio * min_rise < 1.0 ? std::optional(ratio) : std::nullopt;
 }
 
 }  // namespace flightwatt::flight

@@ -18,4 +18,8 @@ struct SupplyShortfall {
 /// count.
 std::optional<SupplyShortfall> compare_with_escs(const Track& supply_w, const Track& escs_w);
 
+/// Returns how many times as much a source of power rises from rest to load as the ESCs of all motors; std::nullopt
+/// within 15 %, and for five times or more, which is that of ESCs that measure no current.
+std::optional<double> rise_beyond_escs(const Track& supply_w, const Track& escs_w);
+
 }  // namespace flightwatt::flight

@@ -92,6 +92,19 @@ TEST(Supply, WithoutARestIsOnlyDoubted) {
     EXPECT_THAT(data.power_w.notes, Contains(HasSubstr("perhaps too small")));
 }
 
+TEST(Supply, OfMoreThanAllEscsDrawIsDoubted) {
+    const auto notes = [](double part, double motors) {
+        auto series = series_of({parts(part), parts(0.25)});
+        series.firmware = "rotorcraft";
+        series.motors = motors;
+        return select_tracks(series).power_w.notes;
+    };
+    EXPECT_THAT(notes(2.0, 4.0), Contains(HasSubstr("BAT 0 gives 2.00 times the power of all 4 ESCs")));
+    EXPECT_THAT(notes(1.1, 4.0), IsEmpty()) << "ESCs measure roughly";
+    EXPECT_THAT(notes(2.0, 6.0), IsEmpty()) << "two have no telemetry";
+    EXPECT_THAT(notes(6.0, 4.0), IsEmpty()) << "these measure no current";
+}
+
 TEST(Supply, WithoutACurrentIsThatOfTheEscsWithTheVoltageOfTheBattery) {
     const auto data = select_tracks(series_of({[](double) { return 0.0; }, parts(0.25)}));
     EXPECT_NEAR(value_at(data.power_w, 50.0), motors_w(50.0), 1e-9);
