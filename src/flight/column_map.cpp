@@ -57,6 +57,7 @@ MappedTrack read_mapped_track(const TomlTable& table) {
     if (track.columns.empty() != constant.has_value())
         throw InputError(table.where(), fmt::format("{} has {} source", track.name, constant ? "a second" : "no"),
                          "expected one of column, columns, product, norm and value");
+    track.states_unit = table.has("unit") || table.has("factor");
     track.unit_factor = unit_factor(table, track.name);
     track.factor = constant.value_or(1.0) * table.optional_number("factor").value_or(1.0);
     if (constant) track.factor *= track.unit_factor;

@@ -49,6 +49,22 @@ struct BoundTrack {
     std::vector<double> values = {};
 };
 
+/// The unit that a column has by its name, in brackets or behind its last "_": "mA" of "I (mA)" and "i_ma"; empty
+/// without one.
+std::string unit_in_name(const std::string& name) {
+    const auto begin = name.find_last_of("([_");
+    if (begin == std::string::npos) return "";
+    const bool is_bracket = name[begin] != '_';
+    const auto end = is_bracket ? name.find_first_of(")]", begin) : name.size();
+    auto text = name.substr(begin + 1, end - begin - 1);
+    const bool is_number = !is_bracket && !text.empty() && text.front() >= '0' && text.front() <= '9';  // "wind_10m"
+    if (units::parse_unit(text)) return is_number ? "" : text;
+    constexpr std::pair<std::string_view, const char*> lower_case[] = {{"mv", "mV"}, {"ma", "mA"},   {"mw", "mW"},
+                                                                       {"kw", "kW"}, {"mah", "mAh"}, {"mwh", "mWh"}};
+    const auto* const found = std::ranges::find(lower_case, text, &std::pair<std::string_view, const char*>::first);
+    return found == std::end(lower_case) ? "" : found->second;
+}
+
 /// Finds the columns of a map in the header of a file. What a map of FlightWatt lacks is std::nullopt.
 class ColumnBinder {
   public:
@@ -89,12 +105,32 @@ class ColumnBinder {
             const double tick = is_product && !bound.columns.empty() ? 1.0 : track.unit_factor;
             const auto column = find(name, is_product ? std::nullopt : quantity_of(track.name), tick);
             if (!column) return std::nullopt;
+            if (!track.states_unit && !map_.is_shipped) require_own_unit(track, *column);
             bound.columns.push_back(*column);
         }
         return bound;
     }
 
   private:
+    /// Refuses a column whose name has another unit of the track's quantity than the one it is read in.
+    void require_own_unit(const MappedTrack& track, const BoundColumn& column) const {
+        const auto text = unit_in_name(column.name);
+        const auto unit = units::parse_unit(text);
+        const bool is_product = track.combine == Combine::product;
+        const bool is_electrical =
+            unit && (unit->quantity == units::Quantity::volt || unit->quantity == units::Quantity::ampere);
+        if (!unit || unit->factor == column.factor ||
+            !(is_product ? is_electrical : unit->quantity == quantity_of(track.name)))
+            return;
+        throw InputError(where_,
+                         fmt::format("the column '{}' is in {} by its name, but its [[track]] {} states no unit",
+                                     column.name, text, track.name),
+                         is_product
+                             ? fmt::format("add the factor to the unit of {}", track.name)
+                             : fmt::format("add unit = \"{}\", or factor = 1 if its values are in the unit of {}", text,
+                                           track.name));
+    }
+
     const ColumnMap& map_;
     CsvTable header_;
     Location where_;
@@ -136,8 +172,8 @@ class MappedRows {
         for (auto& [mapped, columns, values] : tracks_) {
             double value = mapped->combine == Combine::norm ? 0.0 : 1.0;
             for (const auto& [place, factor, name] : columns) {
-                const double cell = factor * number(row, place, mapped->name);
-                value = mapped->combine == Combine::norm ? std::hypot(value, cell) : value * cell;
+                const double scaled = factor * number(row, place, mapped->name);
+                value = mapped->combine == Combine::norm ? std::hypot(value, scaled) : value * scaled;
             }
             values.push_back(value * mapped->factor);
         }

@@ -68,12 +68,35 @@ TEST(MappedCsv, TakesTheUnitThatTheNameStates) {
     EXPECT_DOUBLE_EQ(value("t,h (ft)", "unit = \"cm\"\n"), 30.48) << "the file states it";
     EXPECT_DOUBLE_EQ(value("t,h", "unit = \"cm\"\n"), 1.0);
     const auto exact = altitude.substr(0, altitude.rfind('h')) + "h(ft)\"\n";
-    EXPECT_DOUBLE_EQ(read("t,h(ft)\n0,100\n1,100\n", exact).tracks.at(0).value.at(0), 100.0) << "the map states all";
+    EXPECT_DOUBLE_EQ(read("t,h(ft)\n0,100\n1,100\n", exact + "factor = 1\n").tracks.at(0).value.at(0), 100.0)
+        << "the map states all";
     EXPECT_THAT(read("t(min),h\n0,1\n1.5,2\n", altitude).tracks.at(0).time_s, ElementsAre(0.0, 90.0));
     EXPECT_EQ(refusal("t,h(V)\n0,1\n1,1\n", altitude), "f.csv:1: has no column 'h'; its columns are t, h(V)");
     EXPECT_EQ(refusal("t,h(m),h(ft)\n0,1,1\n1,1,1\n", altitude),
               "f.csv:1: has several columns 'h'; name one with its unit: 'h(m)'");
     EXPECT_EQ(refusal("t,h,h\n0,1,1\n1,1,1\n", altitude), "f.csv:1: has several columns 'h'; keep one of them");
+}
+
+TEST(MappedCsv, RefusesAColumnThatIsNamedInAnotherUnitThanItIsReadIn) {
+    const auto track = [](const std::string& name, const std::string& columns) {
+        return "[[track]]\nname = \"" + name + "\"\n" + columns + "\n";
+    };
+    const std::string milliwatts = "t,p_mw\n0,15000\n1,15000\n";
+    EXPECT_EQ(refusal(milliwatts, track("power_w", "column = \"p_mw\"")),
+              "f.csv:1: the column 'p_mw' is in mW by its name, but its [[track]] power_w states no unit; add unit = "
+              "\"mW\", or factor = 1 if its values are in the unit of power_w");
+    const auto watts = read(milliwatts, track("power_w", "column = \"p_mw\"\nunit = \"mW\""));
+    EXPECT_DOUBLE_EQ(watts.tracks.at(0).value.at(0), 15.0);
+    EXPECT_THAT(refusal("t,h(ft)\n0,100\n1,100\n", track("altitude_m", "column = \"h(ft)\"")), HasSubstr("is in ft"));
+    EXPECT_THAT(refusal("t,u,i_ma\n0,12,900\n1,12,900\n", track("power_w", "product = [\"u\", \"i_ma\"]")),
+                HasSubstr("is in mA by its name, but its [[track]] power_w states no unit; add the factor"));
+    for (const auto* own : {"h_m", "alt_10m", "h_", "h(m)", "a_b", "h(1)"})
+        EXPECT_DOUBLE_EQ(
+            read(fmt::format("t,{}\n0,100\n1,100\n", own), track("altitude_m", fmt::format("column = \"{}\"", own)))
+                .tracks.at(0)
+                .value.at(0),
+            100.0)
+            << own;
 }
 
 TEST(MappedCsv, SaysWhyThereIsNoPowerWhereVoltageAndCurrentAreInDifferentRows) {
