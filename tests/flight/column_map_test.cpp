@@ -182,6 +182,16 @@ TEST(ShippedMaps, ReadEdgeTxWithSensorsOfFrSky) {
     EXPECT_DOUBLE_EQ(select_track(series, "longitude_deg").value.front(), -7.25);
 }
 
+TEST(ShippedMaps, NoteTheCurrentOfASecondPack) {
+    const auto row = [](const Moment& at) {
+        return fmt::format("2026-01-{:02},{},{:.2f},{:.2f},{:.1f},{:.0f},{:.0f}", at.day, at.clock, at.volt, at.ampere,
+                           at.height_m, 500.0 * at.ampere, at.charge_mah);
+    };
+    const auto series =
+        recognised("two.csv", test::flight_table("Date,Time,VFAS(V),Curr(A),Alt(m),Cur2(mA),Capa(mAh)", row));
+    EXPECT_THAT(series.notes, ElementsAre(HasSubstr("not read: Cur2(mA) (a second pack's would be missing)")));
+}
+
 TEST(ShippedMaps, ReadEdgeTxWithCrossfire) {
     const auto row = [](const Moment& at) {
         return fmt::format("2026-01-{:02};{};-60;{:.1f};{:.1f};{:.0f};{:.0f};35,9;33.5 7.25", at.day, at.clock, at.volt,

@@ -218,6 +218,7 @@ class MappedRows {
             series.tracks.push_back(std::move(track));
         }
         sort_tracks(series.tracks);
+        series.notes = notes_;
         series.skipped = std::move(log.skipped);
         for (auto& skipped : series.skipped)
             std::ranges::stable_sort(skipped.lines, {}, &telemetry::SkippedLines::AtTime::time_s);
@@ -236,9 +237,26 @@ class MappedRows {
         if (const auto date = find_columns(columns, map_.date_column); !date.empty()) date_place_ = date.front().index;
         for (const auto& track : map_.tracks)
             if (auto bound = binder.bind(track)) tracks_.push_back(std::move(*bound));
+        if (map_.is_shipped && find_track("current_a")) note_other_currents(columns);
         const bool has_power = find_track("power_w") || (find_track("voltage_v") && find_track("current_a"));
         if (!has_power && !find_track("altitude_m"))
             throw InputError({file_, header.line}, "has no columns of power or altitude");
+    }
+
+    /// Further columns in A or mA may be of a second pack, or of a part of the first.
+    void note_other_currents(const std::vector<std::string>& columns) {
+        std::vector<std::string> others;
+        for (std::size_t place = 0; place < columns.size(); ++place) {
+            const auto unit = units::parse_unit(unit_in_name(columns[place]));
+            const bool is_read = std::ranges::any_of(tracks_, [&](const BoundTrack& track) {
+                return std::ranges::find(track.columns, place, &BoundColumn::place) != track.columns.end();
+            });
+            if (unit && unit->quantity == units::Quantity::ampere && !is_read) others.push_back(columns[place]);
+        }
+        if (!others.empty())
+            notes_.push_back(
+                fmt::format("the power is that of one current; not read: {} (a second pack's would be missing)",
+                            fmt::join(others, ", ")));
     }
 
     BoundTrack* find_track(std::string_view name) {
@@ -322,6 +340,7 @@ class MappedRows {
     std::string time_name_;
     telemetry::MessageTable rows_{"row", {}, {}, {}};
     std::string first_bad_time_;
+    std::vector<std::string> notes_;
     telemetry::SkippedLines words_{"cells that are no numbers", {}, telemetry::SkippedLines::Unit::line};
     telemetry::SkippedLines ragged_{"another number of cells than the header", {}, telemetry::SkippedLines::Unit::line};
 };
