@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -91,6 +93,33 @@ Findings product_difference(const PowerRecord& record) {
     return {
         {difference, fmt::format("the power of {} is {:.0f} % away from voltage times current: its energy is uncertain",
                                  record.power_source, units::percentage(difference, 1.0))}};
+}
+
+Findings stuck_voltage(const PowerRecord& record) {
+    constexpr double next_part = 0.2;
+    constexpr double varied_part = 0.1;  // of the mean current
+    if (record.is_sum_of_circuits || record.voltage_v.empty() || !record.has_current()) return {};
+    const auto lasts_s = [&](const IndexSpan& run) { return record.time_s[run.end - 1] - record.time_s[run.begin]; };
+    std::vector<IndexSpan> runs;
+    for (const auto& flown : record.in_flight)
+        std::ranges::move(runs_of(
+                              flown, [](std::size_t) { return true; },
+                              [&](std::size_t i) { return record.voltage_v[i] == record.voltage_v[i - 1]; }),
+                          std::back_inserter(runs));
+    if (runs.size() < 2) return {};  // constant throughout
+    std::ranges::stable_sort(runs, std::ranges::greater(), lasts_s);
+    const auto& longest = runs.front();
+    const auto currents_a = part_of(record.current_a, longest);
+    const std::vector<double> varied_a(currents_a.begin(), currents_a.end());
+    const bool varies =
+        quantile_of(varied_a, 0.95) - quantile_of(varied_a, 0.05) > varied_part * std::abs(record.mean_a);
+    if (!varies || lasts_s(runs[1]) > next_part * lasts_s(longest)) return {};
+    const double part = lasts_s(longest) / record.duration_s;
+    return {
+        {part, fmt::format("the voltage stays at {:.4g} V from {:.1f} to {:.1f} s, {:.0f} % of the flight, while the "
+                           "current varies: is its sensor stuck? The energy there is approximate",
+                           record.voltage_v[longest.begin], record.time_s[longest.begin],
+                           record.time_s[longest.end - 1], units::percentage(part, 1.0))}};
 }
 
 Findings counter_return(const PowerRecord& record) {

@@ -20,6 +20,10 @@ using Findings = std::vector<Finding>;
 /// Finds the median relative difference of power from voltage times current.
 Findings product_difference(const PowerRecord& record);
 
+/// Finds the part of the flight in which the voltage stays at one value while the current varies, if it stays nowhere
+/// else for a fifth as long, as it would by a coarse resolution.
+Findings stuck_voltage(const PowerRecord& record);
+
 /// Finds, for each counter, the sum of its falls in flight over that of its rises.
 Findings counter_return(const PowerRecord& record);
 

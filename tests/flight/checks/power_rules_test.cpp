@@ -202,6 +202,24 @@ TEST(PowerRules, OfAVoltageThatStandsStill) {
     EXPECT_THAT(found_in(std::move(record)).warnings, testing::Not(is_constant)) << "with that current, too";
 }
 
+TEST(PowerRules, OfAVoltageThatStandsStillFromAMomentOn) {
+    const auto stands = [](std::size_t count, double step_a = 0.2) {
+        auto record = sound_record();
+        record.voltage_v.assign(record.time_s.size(), 12.6);
+        for (std::size_t i = first; i < last; ++i) {
+            const bool is_stuck = i >= 200 && i < 200 + count;
+            record.voltage_v[i] = is_stuck ? 12.0 : 12.6 - 0.001 * static_cast<double>(i - first);
+            record.current_a[i] = 2.0 + step_a * static_cast<double>(i % 3);
+            record.power_w[i] = record.voltage_v[i] * record.current_a[i];
+        }
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_told = Contains(HasSubstr("the voltage stays at 12 V from 200.0 to "));
+    EXPECT_THAT(stands(400), is_told);
+    EXPECT_THAT(stands(150), testing::Not(is_told));
+    EXPECT_THAT(stands(400, 0.0), testing::Not(is_told)) << "with the current, as in a glide";
+}
+
 TEST(PowerRules, OfPowerOutsideOfTheFlight) {
     const auto outside = [](std::size_t count, double power_w = 22.0) {
         auto record = sound_record();
