@@ -239,11 +239,17 @@ std::vector<std::string> find_suspect_packs(std::vector<Device> powers, const st
     if (powers.size() < 2 || powers.front().track.time_s.size() < stuck_reports) return findings;
     const auto table = table_of(powers);
     const double all_j = table.all_j();
+    std::vector<DeviceComparison> compared;
+    for (std::size_t d = 0; d < powers.size(); ++d)
+        compared.push_back(compare_with_others(table, d, reported_by(powers[d], currents), true));
+    const auto logged = compared;
     for (std::size_t d = 0; d < powers.size(); ++d) {
-        if (is_constant(powers[d].track)) continue;  // a steady load
-        const auto reported = reported_by(powers[d], currents);
-        const auto compared = compare_with_others(table, d, reported, true);
-        const auto suspect = check_circuit(table, compared, reported, all_j);
+        if (is_constant(powers[d].track)) continue;              // a steady load
+        for (std::size_t i = 0; i < table.time_s.size(); ++i) {  // at rest all currents may stay
+            const auto moving = std::ranges::count_if(logged, [&](const auto& of) { return !of.is_stuck[i]; });
+            compared[d].is_stuck[i] = logged[d].is_stuck[i] && moving > 0;
+        }
+        const auto suspect = check_circuit(table, compared[d], reported_by(powers[d], currents), all_j);
         if (is_suspect(suspect, all_j)) findings.push_back(describe(suspect, powers[d].name, all_j));
     }
     return findings;

@@ -205,6 +205,14 @@ TEST(Circuits, TellOfAPackWhoseSensorFailsInFlight) {
     EXPECT_THAT(select_tracks(failing).power_w.notes, Not(is_told)) << "a pack of the lift motors rests on the wing";
 }
 
+TEST(Circuits, LetAllPacksStayAtRest) {
+    auto both = series_of({{"BAT", "0", 16.0, times(0.8)}, {"BAT", "1", 16.0, times(0.2)}});
+    for (auto& track : both.tracks)
+        if (track.name == "current_a" || track.name == "power_w")
+            for (std::size_t i = 0; i < 50; ++i) track.value[i] = track.name == "power_w" ? 48.0 : 3.0;
+    EXPECT_THAT(select_tracks(both).power_w.notes, testing::IsEmpty());
+}
+
 TEST(Circuits, TellOfAPackWhoseSensorIsReversed) {
     const auto data = select_tracks(series_of({{"BAT", "0", 16.0, times(0.8)}, {"BAT", "1", 16.0, times(-0.2)}}));
     EXPECT_THAT(data.power_w.notes, ElementsAre(HasSubstr("is it charged in flight, or is its sensor reversed?")));
