@@ -22,7 +22,7 @@ struct MappedTrack {
     std::vector<std::string> columns;  ///< if empty, `factor` is the value
     double unit_factor = 1.0;          ///< of the unit, if the names of the columns state none
     double factor = 1.0;
-    bool states_unit = false;  ///< or a factor: names of columns that look like another unit do not count
+    bool states_unit = false;  ///< or a factor, before a unit in the name of a column
 };
 
 /// Which columns of a CSV are the tracks of a flight (docs/formats.md, "Column map").

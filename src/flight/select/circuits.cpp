@@ -339,7 +339,7 @@ Circuit circuit_of(const std::vector<const Monitor*>& packs, ChosenTrack& power)
     return circuit;
 }
 
-/// Packs that stop counting in flight, or that are not what their monitors say; of VTOLs, whose lift motors may have a
+/// Packs that stop counting in flight, or that are not what their monitors state; of VTOLs, whose lift motors may have a
 /// pack of their own that rests, without the former.
 void add_suspicions(const FlightSeries& series, const std::vector<Monitor>& monitors,
                     const std::vector<std::vector<const Monitor*>>& circuits, std::vector<std::string>& notes) {
@@ -366,8 +366,7 @@ void add_suspicions(const FlightSeries& series, const std::vector<Monitor>& moni
             if (!are_smart(monitor, *other) && agree(monitor.current_a, other->current_a, same_current))
                 notes.push_back(fmt::format(
                     "{} and {} have the same current at nearly every sample, though their voltages differ: if "
-                    "one pack feeds both (with a wrong scale of a voltage, or a tap of its cells), its energy is counted "
-                    "twice",
+                    "one pack feeds both (a voltage with a wrong scale, or a tap of its cells), it is counted twice",
                     other->text(), monitor.text()));
         }
     }
