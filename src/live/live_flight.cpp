@@ -250,6 +250,7 @@ void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState&
     if (is_counted && input_->initial_soc_percent)
         estimate_soc_from_counter(data.charge_ah, input_->battery->capacity_ah, *input_->initial_soc_percent,
                                   *state.battery);
+    if (contradicts_charge(state, alarms_)) use_voltage_if_lower(*state.battery);
 }
 
 /// Why there can be no prediction now; empty: there can.
@@ -300,10 +301,12 @@ void LiveFlight::Impl::predict_battery(LiveState& state, Remarks& remarks) const
     const auto& now = *state.battery;
     const bool has_record = !state.began_in_air && record_ && now.soc_percent;
     if (!has_record && !(state.began_in_air && now.state)) return;
-    auto result = forecast_battery(*input_->battery, input_->limits,
-                                   {*now.state, has_record ? *now.drawn_ah : 0.0, now.initial}, *state.prediction);
+    auto from = battery_now(now);
+    if (!has_record) from.drawn_ah = 0.0;
+    auto result = forecast_battery(*input_->battery, input_->limits, from, *state.prediction);
     if (!has_record) result.initial.soc_percent = now.state->soc_percent;
-    result.initial_soc_is_current = !has_record;
+    result.initial_soc_is_current = !has_record || now.is_by_voltage;
+    if (now.is_by_voltage) remarks.warnings.push_back(voltage_warning(*now.soc_percent, now.state->soc_percent));
     if (!has_record)
         remarks.warnings.emplace_back(now.soc_percent
                                           ? "the telemetry begins in the air: the state of charge is by the "

@@ -25,12 +25,14 @@ struct LiveAlarm {
 struct LiveBattery {
     std::optional<double> soc_percent;                ///< the initial one less the charge drawn
     std::optional<double> soc_by_voltage_percent;     ///< by the battery's model from voltage and current
+    double soc_by_voltage_sd_percent = 0.0;           ///< its standard deviation [points]
     InitialCharge initial;                            ///< or the current one, where only the voltage shows it
     std::optional<double> drawn_ah;                   ///< charge drawn since the first retained message
     std::optional<double> voltage_residual_v;         ///< measured less the model's, median of the last minute
     std::optional<double> time_to_reserve_s;          ///< time until the reserve is reached in a continued cruise
     std::optional<double> probability_below_reserve;  ///< probability of landing below the reserve, 0 to 1
     std::optional<battery::BatteryState> state;       ///< state for forecasts
+    bool is_by_voltage = false;  ///< `state` is by the voltage, which shows less than the charge drawn
 };
 
 /// The state of a flight in progress at a moment.

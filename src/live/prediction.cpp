@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "live/state/soc_estimation.h"
 #include "path/path.h"
 #include "path/trajectory.h"
 
@@ -267,9 +268,18 @@ BatteryPrediction predict_battery(const PredictionInput& input, const flight::Fl
     remarks.notes.insert(remarks.notes.end(), records.notes.begin(), records.notes.end());
     const auto& record = records.records.back();
     const auto initial = initial_charge(input, record);
-    return forecast_battery(
-        *input.battery, input.limits,
-        {state_after(*input.battery, record, initial.soc_percent), record.charge_ah.back(), initial}, prediction);
+    BatteryNow now{state_after(*input.battery, record, initial.soc_percent), record.charge_ah.back(), initial};
+    const auto by_voltage = check_voltage(*input.battery, record, initial.soc_percent);
+    const bool is_lower =
+        by_voltage && by_voltage->residual_v <= -failing_cell_v && by_voltage->soc_percent < now.state.soc_percent;
+    if (is_lower) {
+        remarks.warnings.push_back(voltage_warning(now.state.soc_percent, by_voltage->soc_percent));
+        now = {
+            {by_voltage->soc_percent, now.state.rc_voltage_v}, 0.0, {by_voltage->soc_percent, by_voltage->sd_percent}};
+    }
+    auto result = forecast_battery(*input.battery, input.limits, now, prediction);
+    result.initial_soc_is_current = is_lower;
+    return result;
 }
 
 /// Throws InputError where the model allows no prediction.

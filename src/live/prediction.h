@@ -56,7 +56,8 @@ struct BatteryPrediction {
     battery::LandingLimits limits;   ///< limits of the mission
     bool worst_uses_min_capacity = false;  ///< the interval of the capacity is known
     InitialCharge initial;
-    bool initial_soc_is_current = false;  ///< earlier charge is unknown: `initial` is the current value
+    bool initial_soc_is_current =
+        false;  ///< earlier charge is unknown, or contradicted: `initial` is the current value
 };
 
 /// The prediction of a flight from a moment to its end.

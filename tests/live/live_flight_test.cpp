@@ -381,21 +381,53 @@ TEST(LiveFlight, MemoryIsBoundedAndSeveralSortiesAreCounted) {
         << "its voltage at rest shows a pack of its own for each";
 }
 
+/// The first 400 s of a log, after half of them with less voltage.
+std::vector<IncomingMessage> messages_with_less_voltage(const std::filesystem::path& log, double volts_less) {
+    auto messages = test::messages_of(log, 400.0);
+    for (auto& message : messages) {
+        if (message.time_s <= 200.0 || message.text.find(" ENERGY ") == std::string::npos) continue;
+        std::istringstream words(message.text);
+        std::vector<std::string> parts;
+        for (std::string word; words >> word;) parts.push_back(word);
+        parts[3] = fmt::format("{}", std::stod(parts[3]) - volts_less);
+        message.text = fmt::format("{}", fmt::join(parts, " "));
+    }
+    return messages;
+}
+
+/// With the alarm "the voltage is too low for this charge" the page stated the landing of the charge: "80.8 %, keeps the
+/// reserve".
+TEST(LiveFlight, AVoltageThatContradictsTheChargeReachesLandingProbabilityAndTimes) {
+    const auto log = test::sample(1);
+    const auto state_with = [&](double volts_less) {
+        auto basis = test::wing_basis();
+        basis.initial_soc_percent.reset();
+        basis.limits.reserve_soc_percent = 55.0;
+        LiveFlight flight(test::options_of(log), basis, nullptr);
+        test::receive_all(flight, messages_with_less_voltage(log, volts_less));
+        return flight.update();
+    };
+    const auto sound = state_with(0.0);
+    const auto failing = state_with(0.6);
+    ASSERT_TRUE(sound.prediction && failing.prediction);
+    const auto& landing = failing.prediction->battery->expected;
+    EXPECT_NEAR(failing.battery->soc_percent.value(), sound.battery->soc_percent.value(), 1.0) << "as counted";
+    EXPECT_NEAR(landing.soc_now_percent, failing.battery->soc_by_voltage_percent.value(), 1e-9);
+    EXPECT_LT(landing.soc_percent, sound.prediction->battery->expected.soc_percent - 20.0);
+    EXPECT_LT(failing.battery->time_to_reserve_s.value(), 0.5 * sound.battery->time_to_reserve_s.value());
+    EXPECT_GT(failing.battery->probability_below_reserve.value(), 0.1);
+    EXPECT_LT(sound.battery->probability_below_reserve.value(), 1e-3);
+    EXPECT_THAT(failing.warnings, testing::Contains(testing::HasSubstr("the prediction is by the voltage")));
+    const auto alarm = std::ranges::find(failing.alarms, "voltage", &LiveAlarm::kind);
+    ASSERT_NE(alarm, failing.alarms.end());
+    EXPECT_THAT(alarm->text, testing::HasSubstr("the prediction is by the voltage"));
+}
+
 TEST(LiveFlight, RaisesAlarms) {
     const auto log = test::sample(1);
     const auto kinds_of = [&](PredictionInput basis, double silent_s, double volts_less) {
         LiveFlight flight(test::options_of(log), std::move(basis), nullptr);
-        for (auto message : test::messages_of(log, 400.0)) {
-            const auto at = message.text.find(" ENERGY ");
-            if (volts_less > 0.0 && message.time_s > 200.0 && at != std::string::npos) {
-                std::istringstream words(message.text);
-                std::vector<std::string> parts;
-                for (std::string word; words >> word;) parts.push_back(word);
-                parts[3] = fmt::format("{}", std::stod(parts[3]) - volts_less);
-                message.text = fmt::format("{}", fmt::join(parts, " "));
-            }
-            flight.receive(message, 0.0);
-        }
+        test::receive_all(flight, messages_with_less_voltage(log, volts_less));
         std::vector<std::string> kinds;
         for (const auto& alarm : flight.update(silent_s).alarms) kinds.push_back(alarm.kind);
         return kinds;

@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "flight/link_gaps.h"
 #include "flight/phase_statistics.h"
+#include "live/state/soc_estimation.h"
 #include "mechanical/flight_bins.h"
 #include "mechanical/flight_progress.h"
 
@@ -38,7 +39,6 @@ bool has_stayed(const flight::Track& altitude_m, double touchdown_s, double now_
 
 constexpr double caution_probability = 0.05;
 constexpr double alarm_probability = 0.20;
-constexpr double failing_cell_v = 0.3;     // below the battery's model: a cell at 3.7 V would be at 3.4 V
 constexpr double short_notice_s = 120.0;   // until the latest landing of a cruise beyond the mission's
 constexpr double min_time_left_s = 10.0;   // below: now
 constexpr double clearing_fraction = 0.5;  // of the threshold that was reached
@@ -122,7 +122,7 @@ void add_reserve_alarm_without_prediction(const LiveState& state, double reserve
                                           std::vector<LiveAlarm>& alarms) {
     if (!state.phase) return;
     const auto now = state.battery.value_or(LiveBattery{});
-    const auto percent = now.soc_percent ? now.soc_percent : now.soc_by_voltage_percent;
+    const auto percent = now.soc_percent && !now.is_by_voltage ? now.soc_percent : now.soc_by_voltage_percent;
     if (percent && *percent <= reserve_percent)
         alarms.push_back({"reserve", alarm, fmt::format("{:.1f} % left, reserve {:g} %", *percent, reserve_percent),
                           "Land now: the charge is below the reserve"});
@@ -242,6 +242,11 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
     result.state = battery::BatteryState{left_percent, 0.0};
 }
 
+bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before) {
+    const double missing_v = state.phase && state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
+    return reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty());
+}
+
 std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<PredictionInput>& input,
                                    const std::vector<LiveAlarm>& before) {
     std::vector<LiveAlarm> alarms;
@@ -261,13 +266,13 @@ std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<P
         add_reserve_alarm(state, reserve_before, alarms);
     else if (input)
         add_reserve_alarm_without_prediction(state, input->limits.reserve_soc_percent, reserve_before, alarms);
-    const double missing_v = state.phase && state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
-    if (reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty())) {
-        alarms.push_back({"voltage", alarm,
-                          fmt::format("the voltage is {:.2f} V below the battery's model: a failing cell, or another "
-                                      "pack",
-                                      missing_v),
-                          "Turn home and land: the voltage is too low for this charge"});
+    if (contradicts_charge(state, before)) {
+        auto text = fmt::format("the voltage is {:.2f} V below the battery's model: a failing cell, or another pack",
+                                -state.battery->voltage_residual_v.value_or(0.0));
+        if (state.battery->is_by_voltage)
+            text += fmt::format("; the prediction is by the voltage, {:.0f} %", state.battery->state->soc_percent);
+        alarms.push_back(
+            {"voltage", alarm, std::move(text), "Turn home and land: the voltage is too low for this charge"});
     }
     if (state.prediction) {
         auto [fraction, text] = model_deviation(*state.prediction, *input);

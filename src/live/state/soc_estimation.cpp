@@ -10,6 +10,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
+#include <fmt/format.h>
 
 namespace flightwatt::live {
 namespace {
@@ -18,25 +19,6 @@ constexpr double watched_s = 60.0;           // for the voltage
 constexpr std::size_t enough_samples = 5;    // in there
 constexpr double failed_percent = -200.0;    // surplus where the battery fails before the landing
 constexpr double other_pack_percent = 15.0;  // increase of the resting state of charge that only another pack explains
-
-/// Compares the voltage of the last minute with the battery's model, and estimates the voltage at rest.
-void compare_voltage(const battery::Battery& battery, const battery::DischargeRecord& record, LiveBattery& result) {
-    if (!battery.thevenin || record.time_s.empty()) return;
-    const auto settled_a = rc_branch_current_a(record, battery.thevenin->rc_time_constant_s);
-    std::vector<double> off_v;
-    std::vector<double> rest_v;
-    for (std::size_t i = record.time_s.size(); i-- > 0 && record.time_s[i] >= record.time_s.back() - watched_s;) {
-        if (!record.used[i]) continue;
-        const double lost_v =
-            battery.resistance_ohm * record.current_a[i] + battery.thevenin->rc_resistance_ohm * settled_a[i];
-        rest_v.push_back(record.voltage_v[i] + lost_v);
-        const auto soc = soc_at(battery, record, result.initial.soc_percent, record.time_s[i]);
-        off_v.push_back(rest_v.back() - open_circuit_voltage_v(battery, std::clamp(*soc, 0.0, 100.0)));
-    }
-    if (off_v.size() < enough_samples) return;
-    result.voltage_residual_v = median(std::move(off_v));
-    result.soc_by_voltage_percent = battery::resting_soc_percent(battery, median(std::move(rest_v)));
-}
 
 /// Without a record: by voltage and current of the last minute, with the RC pair at rest.
 void estimate_soc_from_voltage(const battery::Battery& battery, const flight::FlightData& data, LiveBattery& result) {
@@ -51,7 +33,8 @@ void estimate_soc_from_voltage(const battery::Battery& battery, const flight::Fl
     if (rest_v.size() < enough_samples) return;
     const double now_v = median(std::move(rest_v));
     result.soc_by_voltage_percent = battery::resting_soc_percent(battery, now_v);
-    result.initial = {*result.soc_by_voltage_percent, battery::resting_soc_sd_percent(battery, now_v)};
+    result.soc_by_voltage_sd_percent = battery::resting_soc_sd_percent(battery, now_v);
+    result.initial = {*result.soc_by_voltage_percent, result.soc_by_voltage_sd_percent};
     result.state = battery::BatteryState{*result.soc_by_voltage_percent, 0.0};
 }
 
@@ -65,8 +48,8 @@ double surplus_percent(const PredictionInput& input, const Prediction& predictio
         const double capacity_ah = nominal_ah + capacity_sds * half_width_ah / normal_half_width();
         battery.capacity_ah = std::max(0.01 * nominal_ah, capacity_ah);
     }
-    const auto state = state_for({now.state.value(), now.soc_percent ? now.drawn_ah.value_or(0.0) : 0.0, now.initial},
-                                 nominal_ah, battery.capacity_ah, charge_sds * now.initial.sd_percent);
+    const auto from = battery_now(now);
+    const auto state = state_for(from, nominal_ah, battery.capacity_ah, charge_sds * from.initial.sd_percent);
     if (!(state.soc_percent > 0.0)) return failed_percent;
     const auto ahead = remaining_power(prediction, std::max(0.0, energy_factor));
     const auto landing = battery::forecast_landing(battery, state, ahead, 0.0, input.limits);
@@ -84,6 +67,44 @@ InitialCharge initial_of(const PredictionInput& input, const std::optional<Initi
 }
 
 }  // namespace
+
+std::optional<VoltageCheck> check_voltage(const battery::Battery& battery, const battery::DischargeRecord& record,
+                                          double initial_soc_percent) {
+    if (!battery.thevenin || record.time_s.empty()) return std::nullopt;
+    const auto settled_a = rc_branch_current_a(record, battery.thevenin->rc_time_constant_s);
+    std::vector<double> off_v;
+    std::vector<double> rest_v;
+    for (std::size_t i = record.time_s.size(); i-- > 0 && record.time_s[i] >= record.time_s.back() - watched_s;) {
+        if (!record.used[i]) continue;
+        const double lost_v =
+            battery.resistance_ohm * record.current_a[i] + battery.thevenin->rc_resistance_ohm * settled_a[i];
+        rest_v.push_back(record.voltage_v[i] + lost_v);
+        const auto soc = soc_at(battery, record, initial_soc_percent, record.time_s[i]);
+        off_v.push_back(rest_v.back() - open_circuit_voltage_v(battery, std::clamp(*soc, 0.0, 100.0)));
+    }
+    if (off_v.size() < enough_samples) return std::nullopt;
+    const double now_v = median(std::move(rest_v));
+    return VoltageCheck{median(std::move(off_v)), battery::resting_soc_percent(battery, now_v),
+                        battery::resting_soc_sd_percent(battery, now_v)};
+}
+
+std::string voltage_warning(double counted_percent, double by_voltage_percent) {
+    return fmt::format(
+        "the voltage shows {:.0f} % of charge where {:.0f} % were counted: the prediction is by the voltage; land early, "
+        "and check cells and label of the pack",
+        by_voltage_percent, counted_percent);
+}
+
+void use_voltage_if_lower(LiveBattery& now) {
+    if (!now.state || !now.soc_by_voltage_percent || *now.soc_by_voltage_percent >= now.state->soc_percent) return;
+    now.state->soc_percent = *now.soc_by_voltage_percent;
+    now.is_by_voltage = true;
+}
+
+BatteryNow battery_now(const LiveBattery& now) {
+    if (now.is_by_voltage) return {now.state.value(), 0.0, {now.state->soc_percent, now.soc_by_voltage_sd_percent}};
+    return {now.state.value(), now.soc_percent ? now.drawn_ah.value_or(0.0) : 0.0, now.initial};
+}
 
 std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
                              double initial_soc_percent, double time_s) {
@@ -104,7 +125,11 @@ LiveBattery estimate_soc(const PredictionInput& input, const std::optional<Initi
         result.state->soc_percent =
             std::min(result.state->soc_percent, units::percent_per_whole);  // a counter ran back
         result.soc_percent = result.state->soc_percent;
-        compare_voltage(battery, *record, result);
+        if (const auto by_voltage = check_voltage(battery, *record, result.initial.soc_percent)) {
+            result.voltage_residual_v = by_voltage->residual_v;
+            result.soc_by_voltage_percent = by_voltage->soc_percent;
+            result.soc_by_voltage_sd_percent = by_voltage->sd_percent;
+        }
     } catch (const std::exception&) {  // no record yet, or more charge drawn than available
         estimate_soc_from_voltage(battery, data, result);
     }
@@ -126,7 +151,8 @@ std::optional<double> probability_below_reserve(const PredictionInput& input, co
     const double energy_effect = std::max(0.0, expected - surplus(1.0, 0.0, 0.0));
     const double capacity_effect =
         input.battery->intervals.capacity_ah ? std::max(0.0, expected - surplus(0.0, -1.0, 0.0)) : 0.0;
-    const double charge_effect = now.initial.sd_percent > 0.0 ? std::max(0.0, expected - surplus(0.0, 0.0, -1.0)) : 0.0;
+    const double charge_sd = battery_now(now).initial.sd_percent;
+    const double charge_effect = charge_sd > 0.0 ? std::max(0.0, expected - surplus(0.0, 0.0, -1.0)) : 0.0;
     const double all = std::hypot(energy_effect, capacity_effect, charge_effect);
     const double by_energy = all > 0.0 ? energy_effect / all : 1.0;
     const double by_capacity = all > 0.0 ? capacity_effect / all : 0.0;
