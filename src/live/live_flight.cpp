@@ -18,12 +18,25 @@
 #include <cmath>
 #include <exception>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace flightwatt::live {
+namespace {
+
+/// Infinite for data without tracks.
+double first_time_s(const flight::FlightData& data) {
+    double first_s = std::numeric_limits<double>::infinity();
+    for (const auto& [name, member] : flight::track_members())
+        if (const auto& time_s = (data.*member).time_s; !time_s.empty()) first_s = std::min(first_s, time_s.front());
+    return first_s;
+}
+
+}  // namespace
+
 /// Results that cannot be computed are reported in the state, whatever the called functions throw.
 class LiveFlight::Impl {
   public:
@@ -352,10 +365,13 @@ void LiveFlight::Impl::decide(LiveState& state) {
     }
 }
 
-/// Every 30 s, as it takes as long as the rest of an update; at once after a gap.
+/// Every 30 s, as it takes as long as the rest of an update; at once after a gap. Without power first after 10 s: what
+/// comes first is often a heartbeat.
 void LiveFlight::Impl::check_record(const flight::FlightData& data, const LiveState& state) {
     constexpr double interval_s = 30.0;
     constexpr double gap_s = 10.0;
+    constexpr double first_power_s = 10.0;
+    if (data.power_w.empty() && state.time_s < first_time_s(data) + first_power_s && !ended_) return;
     if (updated_s_ && std::abs(state.time_s - *updated_s_) > gap_s) checked_s_.reset();
     updated_s_ = state.time_s;
     if (checked_s_ && state.time_s < *checked_s_ + interval_s && !state.landed && !ended_) return;

@@ -97,6 +97,25 @@ TEST(LiveFlightByMavlink, HoldsItsEnergyWithLossLatenessAndTwoRadios) {
     EXPECT_EQ(state.sortie, 1U);
 }
 
+/// Each watch began with this warning, as a heartbeat came before the first power.
+TEST(LiveFlightByMavlink, MissesThePowerOnlyAfterTenSeconds) {
+    const auto log = test::tlog_of_flight();
+    CollectedMessages received;
+    MavlinkReader reader(received, vehicles(), true);
+    reader.push(log);
+    std::erase_if(received.messages, [](const auto& of) { return of.text.find(" SYS_STATUS") != std::string::npos; });
+    const auto warnings_at = [&](double time_s) {
+        LiveOptions options;
+        options.is_mavlink = true;
+        LiveFlight flight(options, std::nullopt, nullptr);
+        for (const auto& message : received.messages)
+            if (*message.time_s <= time_s) flight.receive(message, *message.time_s);
+        return flight.update().warnings;
+    };
+    EXPECT_THAT(warnings_at(5.0), testing::IsEmpty());
+    EXPECT_THAT(warnings_at(15.0), testing::Contains(testing::StartsWith("no measured power")));
+}
+
 // A log of any kind that is played as MAVLink is the same flight.
 TEST(LiveFlightByMavlink, HearsAFlightThatIsPlayed) {
     const auto log = test::tlog_of_flight();
