@@ -7,6 +7,7 @@
 #include "flight/families/derived_tracks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -336,6 +337,19 @@ void leave_out_partial_position(telemetry::MessageTable& position, const telemet
                                     begins ? "begins" : "ends"));
 }
 
+/// Leaves out the speeds of an aircraft that knows none, as without GPS: both messages then have 0 throughout, which says
+/// that it stands.
+void leave_out_unknown_speeds(telemetry::MessageTable* position, telemetry::MessageTable* hud) {
+    constexpr std::array speeds{"vx", "vy", "groundspeed"};
+    for (const auto* table : {position, hud})
+        for (const auto* speed : speeds)
+            if (table != nullptr && has_values(*table, speed, no_value)) return;
+    for (auto* table : {position, hud})
+        if (table != nullptr)
+            std::erase_if(table->columns,
+                          [&](const auto& column) { return std::ranges::find(speeds, column.field) != speeds.end(); });
+}
+
 /// A time in which the battery's own message is silent, and the status is not.
 struct Silence {
     double from_s;
@@ -408,8 +422,10 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
         std::erase_if(hud->columns, [](const telemetry::Column& column) { return column.field == "airspeed"; });
     const auto beat = find("HEARTBEAT");
     const auto* heartbeat = beat == tables.end() ? nullptr : &*beat;
-    if (const auto position = find("GLOBAL_POSITION_INT"); position != tables.end() && hud != tables.end())
+    const auto position = find("GLOBAL_POSITION_INT");
+    if (position != tables.end() && hud != tables.end())
         leave_out_partial_position(*position, *hud, heartbeat, log.facts.notes);
+    leave_out_unknown_speeds(position == tables.end() ? nullptr : &*position, hud == tables.end() ? nullptr : &*hud);
     if (battery != tables.end()) leave_out_other_batteries(*battery, log.facts.notes);
     const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
                              has_values(*battery, "current_battery", unknown);

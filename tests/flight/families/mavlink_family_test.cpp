@@ -76,6 +76,25 @@ TEST(MavlinkFamily, AddsTheVoltagesOfCellsThatAreKnown) {
     EXPECT_THAT(sources_of(series, "charge_ah"), testing::ElementsAre("BATTERY_STATUS.current_consumed"));
 }
 
+/// A speed of 0 throughout said that the aircraft stands: a motor whose throttle is not stated was idle, and 200 of 240 s
+/// in the air were none.
+TEST(MavlinkFamily, KnowsNoSpeedWhereNoneIsStated) {
+    test::MavlinkSender vehicle;
+    const auto sources_with = [&](float hud_speed) {
+        return sources_of(
+            series_of(vehicle,
+                      [&](int i) {
+                          return std::vector{
+                              vehicle.battery({4'000}, 1'000, 10 * i), vehicle.position(i, 50.0),
+                              vehicle.packet(74, test::little_endian(0.0F) + test::little_endian(hud_speed) +
+                                                     test::little_endian(540.0F) + std::string(8, '\1'))};
+                      }),
+            "ground_speed_m_per_s");
+    };
+    EXPECT_THAT(sources_with(0.0F), testing::IsEmpty());
+    EXPECT_THAT(sources_with(12.0F), testing::SizeIs(2));
+}
+
 TEST(MavlinkFamily, BatteryStatesItsTemperatureOrNone) {
     const auto temperature_c = [](std::int16_t stated) {
         test::MavlinkSender vehicle;
