@@ -145,6 +145,44 @@ TEST(FlightPackets, HaveTheHeightAboveTheGroundAndNoCurrentAboveTheLimit) {
     EXPECT_THAT(sent["relative_alt"], testing::ElementsAre(0.0, 50'000.0));
 }
 
+/// Without it, phases of a played log began and ended up to 3 s off those of the log.
+TEST(FlightPackets, StateWhetherTheAircraftHasLandedOnceThatIsKnown) {
+    flight::FlightData data;
+    data.power_w.time_s = data.voltage_v.time_s = {0.0, 10.0, 20.0};
+    data.power_w.value = data.voltage_v.value = {10.0, 10.0, 10.0};
+    const auto sent_of = [&] {
+        std::vector<std::pair<double, double>> sent;
+        for (const auto& message : flight_packets(data)) {
+            const auto packet = telemetry::read_mavlink_packet(message.packet).value();
+            if (packet.name == "EXTENDED_SYS_STATE")
+                sent.emplace_back(packet.of.at("landed_state"), packet.of.at("vtol_state"));
+        }
+        return sent;
+    };
+    EXPECT_THAT(sent_of(), testing::IsEmpty());
+    data.landed.time_s = {5.0, 15.0};
+    data.landed.value = {0.0, 1.0};
+    data.vtol_state.time_s = {0.0};
+    data.vtol_state.value = {3.0};
+    EXPECT_THAT(sent_of(), testing::ElementsAre(std::pair(0.0, 3.0), std::pair(2.0, 3.0), std::pair(1.0, 3.0)));
+}
+
+/// The lowest altitude was that of home: an aircraft whose barometer sinks after the landing stood 20 m above it.
+TEST(FlightPackets, HaveHeightsAboveTheGroundOfTheFirstFlight) {
+    auto flown = flight::load_flight(test::write_text(test::scratch_dir() / "flown.tlog", test::tlog_of_flight())).data;
+    flown.altitude_m.source = "BARO.Alt";
+    for (auto& altitude_m : flown.altitude_m.value) altitude_m += 400.0;
+    const double end_s = flown.altitude_m.time_s.back();
+    flown.altitude_m.time_s.push_back(end_s + 1.0);
+    flown.altitude_m.value.push_back(380.0);
+    for (const auto& message : flight_packets(flown)) {
+        const auto packet = telemetry::read_mavlink_packet(message.packet).value();
+        if (packet.name != "GLOBAL_POSITION_INT") continue;
+        EXPECT_NEAR(packet.of.at("relative_alt"), 0.0, 500.0) << "mm";
+        break;
+    }
+}
+
 /// The sum of two packs, as a monitor of its own, counted next to them: the power was twice as high.
 TEST(LiveFlightByMavlink, CountsMonitorsByTheParametersThatPassBy) {
     const auto power_w = [](const std::string& first_parameter) {

@@ -2,12 +2,15 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "flight/segment.h"
 #include "flight/select.h"
 #include "telemetry/mavlink_sender.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <optional>
 
 namespace flightwatt::live {
 namespace {
@@ -16,26 +19,41 @@ double state_or(const flight::Track& track, double time_s, double otherwise) {
     return track.empty() ? otherwise : state_at(track, time_s);
 }
 
+/// The altitude of the ground by the first flight; std::nullopt without one. The lowest altitude is less where that of the
+/// log drifts or jumps.
+std::optional<double> ground_of_first_flight_m(const flight::FlightData& data) {
+    try {
+        const auto phases = flight::segment(data);
+        if (!phases.sorties.empty()) return phases.sorties.front().ground_altitude_m;
+    } catch (const std::exception&) {  // what the log has shows no flight
+    }
+    return std::nullopt;
+}
+
 /// Packets of an aircraft by its tracks, with the state of the others at each time.
 class AircraftSender {
   public:
     explicit AircraftSender(const flight::FlightData& data) : data_(data) {
         const auto ground_m = stated_ground_altitude_m(data);
         if (const auto& of_log = data.altitude_m.value; ground_m || !of_log.empty())
-            ground_m_ = ground_m ? *ground_m : std::ranges::min(of_log);
+            ground_m_ = ground_m ? *ground_m : ground_of_first_flight_m(data).value_or(std::ranges::min(of_log));
     }
 
     void send_heartbeat(double time_s) {
         constexpr double fixed_wing = 1.0;
         constexpr double quadrotor = 2.0;
+        constexpr double vtol = 22.0;
         constexpr double no_autopilot_of_its_own = 0.0;  // generic
         constexpr double armed = 128.0;
         add(time_s, "HEARTBEAT",
-            {{"type", data_.is_rotorcraft() ? quadrotor : fixed_wing},
+            {{"type", !data_.vtol_state.empty() ? vtol
+                      : data_.is_rotorcraft()   ? quadrotor
+                                                : fixed_wing},
              {"autopilot", no_autopilot_of_its_own},
              {"base_mode", state_or(data_.armed, time_s, 1.0) * armed},
              {"custom_mode", state_or(data_.mode, time_s, 0.0)},
              {"mavlink_version", 3.0}});
+        send_landed_state(time_s);
         constexpr double airspeed_sensor = 16.0;
         const double sensors = data_.airspeed_is_measured() ? airspeed_sensor : 0.0;
         add(time_s, "SYS_STATUS",
@@ -45,6 +63,18 @@ class AircraftSender {
              {"voltage_battery", 65'535.0},
              {"current_battery", -1.0},
              {"battery_remaining", -1.0}});
+    }
+
+    /// Only where the log knows whether it flies, or what carries it.
+    void send_landed_state(double time_s) {
+        if (data_.landed.empty() && data_.vtol_state.empty()) return;
+        constexpr double on_ground = 1.0;
+        constexpr double in_air = 2.0;
+        const auto& landed = data_.landed;
+        const bool is_known = !landed.empty() && time_s >= landed.time_s.front();  // some logs have the changes alone
+        const double state = !is_known ? 0.0 : state_at(landed, time_s) == 1.0 ? on_ground : in_air;
+        add(time_s, "EXTENDED_SYS_STATE",
+            {{"vtol_state", state_or(data_.vtol_state, time_s, 0.0)}, {"landed_state", state}});
     }
 
     /// A voltage of more than 65.534 V continues in the second cell, as autopilots do.
@@ -101,7 +131,8 @@ class AircraftSender {
     }
 
     const flight::FlightData& data_;
-    double ground_m_ = 0.0;  ///< altitude of the ground, as the log states it, else the lowest one
+    double ground_m_ =
+        0.0;  ///< altitude of the ground, as the log states it, else of the first flight, else the lowest
     telemetry::MavlinkSender sender_{1, 1};
     std::vector<IncomingMessage> messages_;
 };
