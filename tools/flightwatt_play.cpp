@@ -14,6 +14,8 @@ namespace {
 
 using namespace flightwatt;
 
+constexpr std::string_view mavlink_target = "mavlink:";
+
 struct PlayArguments {
     std::optional<std::string> to;
     live::PlaybackOptions how;
@@ -63,8 +65,12 @@ Fields<PlaybackReport> record_fields(const PlaybackReport*) {
 namespace {
 
 void print_report(const cli::StageCall& call, const PlayArguments& arguments, const live::PlaybackReport& report) {
-    for (const auto& [reason, lines] : report.left_out)
-        cli::warn(call, fmt::format("{} line{} left out: {}", lines, lines == 1 ? "" : "s", reason));
+    const bool has_lines = !arguments.to->starts_with(mavlink_target);  // packets may also lack in the log
+    for (const auto& [reason, count] : report.left_out)
+        cli::warn(call, has_lines ? fmt::format("{} line{} left out: {}", count, count == 1 ? "" : "s", reason)
+                                  : fmt::format("{}: {}", reason, count));
+    if (report.messages == 0 && report.lost == 0 && !report.stopped && arguments.how.from_s > 0.0)
+        cli::warn(call, fmt::format("nothing was sent: the log has nothing after --from {:g}", arguments.how.from_s));
     if (report.shortened_gaps > 0) {
         cli::note(call, fmt::format("{} gap{} of more than {:.0f} s played as so long", report.shortened_gaps,
                                     report.shortened_gaps == 1 ? "" : "s", live::max_played_gap_s));
@@ -78,19 +84,18 @@ void print_report(const cli::StageCall& call, const PlayArguments& arguments, co
 
 int play(const cli::StageCall& call, const PlayArguments& arguments) {
     constexpr std::string_view udp = "udp:";
-    constexpr std::string_view mavlink = "mavlink:";
     constexpr auto targets = "udp:ADDRESS:PORT, mavlink:ADDRESS:PORT or -";
     if (!arguments.to) throw UsageError(fmt::format("nowhere to play to: expected --to {}", targets));
     const auto& to = *arguments.to;
     if (to == "-" && call.json) throw UsageError("--json would stand among the lines of --to -");
-    if (to != "-" && !to.starts_with(udp) && !to.starts_with(mavlink))
+    if (to != "-" && !to.starts_with(udp) && !to.starts_with(mavlink_target))
         throw UsageError(fmt::format("unknown target '{}': expected {}", to, targets));
     const SignalWatch signals;
     bool has_reader = true;
     const auto stop = [&] { return signals.received().has_value() || !has_reader; };
-    if (to.starts_with(mavlink)) {
+    if (to.starts_with(mavlink_target)) {
         if (arguments.messages) throw UsageError("--messages defines Paparazzi's messages: MAVLink's are known");
-        const auto target = live::open_mavlink_target(to.substr(mavlink.size()));
+        const auto target = live::open_mavlink_target(to.substr(mavlink_target.size()));
         print_report(call, arguments,
                      live::play_as_mavlink(call.inputs.front(), arguments.how, target, stop, arguments.aircraft));
         return cli::ok;
