@@ -395,8 +395,8 @@ std::vector<IncomingMessage> messages_with_less_voltage(const std::filesystem::p
     return messages;
 }
 
-/// With the alarm "the voltage is too low for this charge" the page stated the landing of the charge: "80.8 %, keeps the
-/// reserve".
+/// With the alarm "the voltage is too low for this charge" the page stated the landing by the counter: "80.8 %, keeps
+/// the reserve".
 TEST(LiveFlight, AVoltageThatContradictsTheChargeReachesLandingProbabilityAndTimes) {
     const auto log = test::sample(1);
     const auto state_with = [&](double volts_less) {

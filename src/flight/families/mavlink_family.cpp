@@ -337,8 +337,8 @@ void leave_out_partial_position(telemetry::MessageTable& position, const telemet
                                     begins ? "begins" : "ends"));
 }
 
-/// Leaves out the speeds of an aircraft that knows none, as without GPS: both messages then have 0 throughout, which says
-/// that it stands.
+/// Leaves out the speeds of an aircraft that knows none, as without GPS: both messages then have 0 throughout, as of one
+/// on the ground.
 void leave_out_unknown_speeds(telemetry::MessageTable* position, telemetry::MessageTable* hud) {
     constexpr std::array speeds{"vx", "vy", "groundspeed"};
     for (const auto* table : {position, hud})

@@ -19,8 +19,8 @@ double state_or(const flight::Track& track, double time_s, double otherwise) {
     return track.empty() ? otherwise : state_at(track, time_s);
 }
 
-/// The altitude of the ground by the first flight; std::nullopt without one. The lowest altitude is less where that of the
-/// log drifts or jumps.
+/// The altitude of the ground by the first flight; std::nullopt without one. The lowest altitude is less where those of
+/// the log drift or jump.
 std::optional<double> ground_of_first_flight_m(const flight::FlightData& data) {
     try {
         const auto phases = flight::segment(data);

@@ -90,8 +90,8 @@ std::optional<VoltageCheck> check_voltage(const battery::Battery& battery, const
 
 std::string voltage_warning(double counted_percent, double by_voltage_percent) {
     return fmt::format(
-        "the voltage shows {:.0f} % of charge where {:.0f} % were counted: the prediction is by the voltage; land early, "
-        "and check cells and label of the pack",
+        "the voltage shows {:.0f} % of charge where {:.0f} % were counted: the prediction is by the voltage; land "
+        "early, and check cells and label of the pack",
         by_voltage_percent, counted_percent);
 }
 
