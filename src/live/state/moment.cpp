@@ -243,7 +243,7 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
 }
 
 bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before) {
-    const double missing_v = state.phase && state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
+    const double missing_v = state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
     return reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty());
 }
 
@@ -269,10 +269,11 @@ std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<P
     if (contradicts_charge(state, before)) {
         auto text = fmt::format("the voltage is {:.2f} V below the battery's model: a failing cell, or another pack",
                                 -state.battery->voltage_residual_v.value_or(0.0));
-        if (state.battery->is_by_voltage)
+        if (state.prediction && state.battery->is_by_voltage)
             text += fmt::format("; the prediction is by the voltage, {:.0f} %", state.battery->state->soc_percent);
-        alarms.push_back(
-            {"voltage", alarm, std::move(text), "Turn home and land: the voltage is too low for this charge"});
+        const auto* action = state.phase ? "Turn home and land" : "Do not take off";
+        alarms.push_back({"voltage", state.phase ? alarm : caution, std::move(text),
+                          fmt::format("{}: the voltage is too low for this charge", action)});
     }
     if (state.prediction) {
         auto [fraction, text] = model_deviation(*state.prediction, *input);

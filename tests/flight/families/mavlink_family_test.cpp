@@ -76,8 +76,8 @@ TEST(MavlinkFamily, AddsTheVoltagesOfCellsThatAreKnown) {
     EXPECT_THAT(sources_of(series, "charge_ah"), testing::ElementsAre("BATTERY_STATUS.current_consumed"));
 }
 
-/// A speed of 0 throughout was that of an aircraft at rest: a motor whose throttle is not stated was idle, and 200 of
-/// 208 s in the air were missed.
+/// A speed of 0 throughout was that of an aircraft at rest: a motor whose throttle is not stated was idle, and 180 of
+/// 210 s in the air were missed.
 TEST(MavlinkFamily, KnowsNoSpeedWhereNoneIsStated) {
     test::MavlinkSender vehicle;
     const auto sources_with = [&](float hud_speed) {

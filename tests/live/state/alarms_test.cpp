@@ -59,6 +59,24 @@ TEST(AlarmsOf, PowerThatEndsIsASilence) {
     EXPECT_THAT(alarms.front().text, testing::StartsWith("no power was received for 40 s"));
 }
 
+/// The alarm ended with the landing, and the page stated the charge left by the counter alone.
+TEST(AlarmsOf, AVoltageThatIsTooLowIsACautionOnTheGround) {
+    auto state = flying(0.0);
+    state.battery->voltage_residual_v = -0.4;
+    const auto in_air = find_alarms(state, input(), {});
+    ASSERT_EQ(in_air.size(), 1U);
+    EXPECT_EQ(in_air.front().grade, "alarm");
+    EXPECT_THAT(in_air.front().action, testing::StartsWith("Turn home and land: "));
+    state.phase.reset();
+    state.prediction.reset();
+    state.battery->voltage_residual_v = -0.2;
+    const auto landed = find_alarms(state, input(), in_air);
+    ASSERT_EQ(landed.size(), 1U);
+    EXPECT_EQ(landed.front().grade, "caution");
+    EXPECT_THAT(landed.front().action, testing::StartsWith("Do not take off: "));
+    EXPECT_THAT(find_alarms(state, input(), {}), testing::IsEmpty()) << "half of the threshold";
+}
+
 TEST(AlarmsOf, AProbabilityThatVariesAroundAThresholdRaisesOneAlarm) {
     std::vector<LiveAlarm> alarms;
     int changes = 0;
