@@ -29,12 +29,12 @@ ${body}
 `;
 }
 
-const of_both = ["default-src 'none'", "img-src data: blob:", "worker-src blob:", "base-uri 'none'", "form-action 'none'"];
+const of_both = ["default-src 'none'", "img-src data: blob:", "base-uri 'none'", "form-action 'none'"];
 
 /// flightwatt.html, with the engine compressed inside.
 function onePage(script, style, module) {
   const code = inScript(script);
-  const policy = [...of_both, `script-src 'sha256-${hash(code)}' 'wasm-unsafe-eval' blob:`, `style-src 'sha256-${hash(style)}'`];
+  const policy = [...of_both, `script-src 'sha256-${hash(code)}' 'wasm-unsafe-eval' blob:`, "worker-src blob:", `style-src 'sha256-${hash(style)}'`];
   return page({
     policy: policy.join("; "),
     head: `<link rel="icon" href="data:,">\n<style>${style}</style>`,
@@ -42,23 +42,24 @@ function onePage(script, style, module) {
   });
 }
 
-/// Answers from what it keeps; a new version of the page is a new cache.
+/// Answers from what it keeps; a new version of the page is a new cache, whose files are of that version: none is what the
+/// browser fetched before.
 function serviceWorker(files, version) {
   return `// FlightWatt works without a network: its files are kept at the first visit.
 const cache_name = "flightwatt-${version}";
-const files = ${JSON.stringify(["./", ...files])};
+const files = ${JSON.stringify(["./", ...files])}.map((file) => new Request(file, { cache: "reload" }));
 addEventListener("install", (event) => event.waitUntil(caches.open(cache_name).then((cache) => cache.addAll(files)).then(() => skipWaiting())));
 addEventListener("activate", (event) => event.waitUntil(caches.keys().then((names) => Promise.all(
   names.filter((name) => name.startsWith("flightwatt-") && name !== cache_name).map((name) => caches.delete(name)))).then(() => clients.claim())));
 addEventListener("fetch", (event) => {
   if (event.request.method !== "GET") return;
-  event.respondWith(caches.match(event.request, { ignoreSearch: true }).then((kept) => kept ?? fetch(event.request)));
+  event.respondWith(caches.match(event.request, { cacheName: cache_name, ignoreSearch: true }).then((kept) => kept ?? fetch(event.request)));
 });
 `;
 }
 
 async function writeSite(folder, script, style, module) {
-  const policy = [...of_both, "script-src 'self' 'wasm-unsafe-eval' blob:", "style-src 'self'", "connect-src 'self'", "manifest-src 'self'"];
+  const policy = [...of_both, "script-src 'self' 'wasm-unsafe-eval' blob:", "worker-src 'self' blob:", "style-src 'self'", "connect-src 'self'", "manifest-src 'self'"];
   const index = page({
     policy: policy.join("; "),
     head: `<meta name="flightwatt-engine" content="flightwatt.wasm">\n<link rel="icon" href="data:,">\n<link rel="stylesheet" href="app.css">`,
