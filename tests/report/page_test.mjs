@@ -295,6 +295,18 @@ test("a browser that cannot open a compressed flight states what to do; so does 
   await broken.context().close();
 });
 
+test("print: tables have all of their rows", inCheck, async () => {
+  const { page, faults } = await open("many.html");
+  const { flights: all } = await documentOf(page);
+  assert.ok(all.length > 12, "more than the table shows at once");
+  await page.emulateMedia({ media: "print" });
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  for (const table of ["Flights", "All numbers of the flights"])
+    assert.ok((await page.locator(`table:has(caption:text-is("${table}")) tbody tr`).count()) >= all.length, table);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+});
+
 test("print: light, whatever the screen, every folded part open, nothing wider than the paper", inCheck, async () => {
   const { page, faults } = await open("six.html", { colorScheme: "dark" });
   await page.emulateMedia({ media: "print" });

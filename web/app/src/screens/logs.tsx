@@ -1,8 +1,9 @@
 // The list of logs: dropped or chosen, grouped by aircraft, each used or with the reason why not.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { Command, Mark, Verdict } from "../ui/basics";
 import { date, duration, quantity } from "../ui/format";
 import { Icon } from "../ui/icons";
+import { useOnPaper } from "../ui/opened";
 import { filesOfInput, type Dropped } from "../work/files";
 import type { Aircraft, LogLine, Project, State } from "../work/project";
 import { inPageWords } from "../work/question";
@@ -77,6 +78,7 @@ const most_shown = 12;
 
 function Lines({ lines }: { lines: LogLine[] }) {
   const [all, setAll] = useState(false);
+  useOnPaper(useCallback(() => setAll(true), []));
   const shown = all ? lines : lines.slice(0, most_shown);
   return (
     <>

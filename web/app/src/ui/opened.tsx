@@ -1,6 +1,6 @@
 // Parts that are closed at first and built when they are opened; on paper they are open.
 import { options, type ComponentChildren } from "preact";
-import { useLayoutEffect, useState } from "preact/hooks";
+import { useCallback, useLayoutEffect, useState } from "preact/hooks";
 
 const openers = new Set<() => void>();
 let listens = false;
@@ -20,6 +20,15 @@ function listen() {
   });
 }
 
+/// Does something before the page is printed, so that all of a part is on paper.
+export function useOnPaper(open: () => void) {
+  useLayoutEffect(() => {
+    listen();
+    openers.add(open);
+    return () => void openers.delete(open);
+  }, [open]);
+}
+
 interface OpenedProps {
   title: string;
   id?: string;
@@ -30,17 +39,13 @@ interface OpenedProps {
 
 export function Opened({ title, id, aside, children }: OpenedProps) {
   const [is_open, setOpen] = useState(false);
+  const open = useCallback(() => setOpen(true), []);
+  useOnPaper(open);
   useLayoutEffect(() => {
-    listen();
-    const open = () => setOpen(true);
     const follow = () => id && location.hash === `#${id}` && open();
-    openers.add(open);
     addEventListener("hashchange", follow);
     follow();
-    return () => {
-      openers.delete(open);
-      removeEventListener("hashchange", follow);
-    };
+    return () => removeEventListener("hashchange", follow);
   }, []);
   return (
     <details class="folded opened" id={id} open={is_open} onToggle={(event) => setOpen(event.currentTarget.open)}>

@@ -1,7 +1,8 @@
 // A table that sorts and filters, of thousands of rows.
 import type { ComponentChildren } from "preact";
-import { useMemo, useState } from "preact/hooks";
+import { useCallback, useMemo, useState } from "preact/hooks";
 import { naturally } from "./format";
+import { useOnPaper } from "./opened";
 
 /// A column: its head, what a cell shows, and what it is sorted by (a missing value comes last).
 export interface Column<Row> {
@@ -17,7 +18,7 @@ interface TableProps<Row> {
   rows: Row[];
   /// The text that a filter looks in; without it there is no filter.
   words?: (row: Row) => string;
-  /// Rows shown at once; more with a button.
+  /// Rows shown at once; more with a button, and all on paper.
   page?: number;
   selected?: Row;
   onSelect?: (row: Row) => void;
@@ -33,6 +34,7 @@ export function Table<Row>(props: TableProps<Row>) {
   const [order, setOrder] = useState<{ column: number; down: boolean } | null>(null);
   const [filter, setFilter] = useState("");
   const [shown, setShown] = useState(page);
+  useOnPaper(useCallback(() => setShown(Infinity), []));
   const chosen = useMemo(() => {
     const wanted = filter.trim().toLowerCase();
     let result = wanted && words ? rows.filter((row) => words(row).toLowerCase().includes(wanted)) : rows;
