@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundled } from "./helpers/bundle.mjs";
 
-const { chance, date, distance, duration, energy, naturally, number, power, quantity } = await bundled("ui/format.ts");
+const { chance, date, distance, duration, energy, naturally, number, power, quantity, typed } = await bundled("ui/format.ts");
 
 test("a missing number is unknown, never 0", () => {
   for (const show of [duration, distance, chance, power, energy]) assert.equal(show(null), "unknown");
@@ -43,4 +43,12 @@ test("kilometres from 1000 m on; dates in words; names in natural order", () => 
   assert.equal(distance(4140), "4.1 km");
   assert.equal(date("2020-07-03 12:17"), "3 July 2020, 12:17");
   assert.deepEqual(["f10", "f9", "f1"].sort(naturally), ["f1", "f9", "f10"]);
+});
+
+test("a number is typed with a point or a comma, and of whole units with thousands", () => {
+  assert.equal(typed("3,2"), 3.2);
+  assert.equal(typed("1.500"), 1.5);
+  for (const text of ["1500", "1,500", "1.500", "1 500", "1\u00a0500", "1'500"]) assert.equal(typed(text, true), 1500, text);
+  assert.equal(typed("1,5", true), 1.5);
+  for (const text of ["", "abc", "-3", "0", "3 Ah", "1,5,0"]) assert.equal(typed(text, true), null, text);
 });

@@ -138,14 +138,15 @@ export function FailsafeCard({ project, aircraft, answered, is_old }: FailsafePr
   const [chosen, setChosen] = useState<Autopilot>(autopilots[answered.answer.aircraft_name.startsWith("PX4") ? 1 : 0]);
   const { failsafe: card, failsafe_missing } = answered.answer;
   const in_new = card?.low?.probability_too_late_interval_95;
-  const home_m = aircraft.question.home_m ?? card?.home_distance_m;
+  const flown_m = card?.home_distance_m;
+  const home_m = aircraft.question.home_m ?? (flown_m != null ? Math.round(flown_m) : undefined);
   const setHome = (value: number | undefined) => project.ask(aircraft.id, { ...aircraft.question, home_m: value });
   return (
     <Card title="Failsafe">
       <label class="field">
         <span>Farthest from home</span>
         <span>
-          <NumberField size={6} value={home_m != null ? Math.round(home_m) : undefined} onNumber={setHome} /> m
+          <NumberField size={6} value={home_m} is_whole onNumber={setHome} /> m
         </span>
       </label>
       {!card && <p>None: {inPageWords(failsafe_missing)}</p>}

@@ -1,6 +1,7 @@
 // The small parts of all screens: cards, verdicts, facts, the command that gives the same.
 import type { ComponentChildren } from "preact";
 import { useState } from "preact/hooks";
+import { typed } from "./format";
 import { Icon } from "./icons";
 
 type Children = { children?: ComponentChildren };
@@ -123,19 +124,23 @@ export function Command({ line }: { line: string }) {
 }
 
 /// A field for a number above 0, which is taken once it is left or by Enter; until then nothing else changes what is typed.
-export function NumberField({ value, size, onNumber }: {
+/// What is no such number is not taken: the field has its value again.
+export function NumberField({ value, size, is_whole, onNumber }: {
   value: number | undefined;
   size: number;
+  /// Whether it counts whole units: "1,500" are thousands.
+  is_whole?: boolean;
   onNumber: (value: number | undefined) => void;
 }) {
-  const [typed, setTyped] = useState<string | null>(null);
+  const [typing, setTyping] = useState<string | null>(null);
   return (
-    <input type="text" inputMode="decimal" size={size} value={typed ?? value ?? ""}
-      onInput={(event) => setTyped(event.currentTarget.value)}
+    <input type="text" inputMode="decimal" size={size} value={typing ?? value ?? ""}
+      onInput={(event) => setTyping(event.currentTarget.value)}
       onChange={(event) => {
-        setTyped(null);
-        const number = Number(event.currentTarget.value.replace(",", "."));
-        onNumber(number > 0 ? number : undefined);
+        const text = event.currentTarget.value;
+        const number = typed(text, is_whole);
+        setTyping(null);
+        if (text.trim() === "" || number != null) onNumber(number ?? undefined);
       }} />
   );
 }

@@ -29,6 +29,15 @@ export function distance(metres: number | null | undefined): string {
   return Math.abs(metres) < 1000 ? quantity(metres, 0, "m") : quantity(metres / 1000, 1, "km");
 }
 
+/// Returns the number above 0 that a person typed, with a point or a comma for decimals, or null. In a number of whole
+/// units, as metres from home, three digits behind it are thousands: "1,500" is not 1.5.
+export function typed(text: string, is_whole = false): number | null {
+  const plain = text.trim();
+  const is_grouped = is_whole && /^[1-9]\d{0,2}(?:[.,'’\s]\d{3})+$/.test(plain);
+  const value = Number(is_grouped ? plain.replace(/\D/g, "") : plain.replace(",", "."));
+  return Number.isFinite(value) && value > 0 ? value : null;
+}
+
 /// Returns a chance in words, from a probability of 0 to 1: "95 of 100", "over 99 of 100", "under 1 of 100".
 export function chance(probability: number | null | undefined): string {
   if (probability == null || !Number.isFinite(probability)) return "unknown";
