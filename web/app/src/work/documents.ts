@@ -55,7 +55,7 @@ export interface Simulation {
   with_capacity_of_flights?: { capacity_ah: number; keeps_reserve: boolean };
   packs?: number;
   packs_needed?: number;
-  flights?: { pack: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null; probability_below_reserve?: number | null; with_capacity_of_flights?: Simulation["with_capacity_of_flights"] }[];
+  flights?: { pack: number; start_s: number; final_soc_percent: number; duration_s: number; energy_wh: number; return_from: string; track?: FlownTrack | null; probability_below_reserve?: number | null; with_capacity_of_flights?: Simulation["with_capacity_of_flights"] }[];
 }
 
 /// A change of a plan that may make it fit, of `flightwatt check --json`.
