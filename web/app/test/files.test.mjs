@@ -5,6 +5,7 @@ import { bundled } from "../../bundled.mjs";
 
 const files = await bundled("work/files.ts");
 const csv = await bundled("work/csv.ts");
+const curve = await bundled("work/curve.ts");
 const shapes = await bundled("work/plan_shapes.ts");
 const question = await bundled("work/question.ts");
 const { Project } = await bundled("work/project.ts");
@@ -34,6 +35,21 @@ test("the same name twice has a folder of its own, and a log that grew the place
   assert.deepEqual(await placeOf("a.bin", "second"), { place: "2/a.bin", is_new: false });
   assert.deepEqual(await placeOf("a.bin", "first and more"), { place: "a.bin", is_new: true });
   assert.deepEqual(await placeOf("a.bin", "fir"), { place: "a.bin", is_new: false });
+});
+
+test("a file that is no longer there is not readable", async () => {
+  const gone = { size: 3, slice: () => ({ arrayBuffer: () => Promise.reject(new DOMException("gone", "NotReadableError")) }) };
+  assert.equal(await files.isReadable(gone), false);
+  assert.equal(await files.isReadable(new Blob(["log"])), true);
+  assert.match(question.inPageWords("cannot be read: I/O error"), /drop it again$/);
+});
+
+test("between the flights of several packs is a gap, and no pack is charged", () => {
+  const table = "time_s,phase,soc_percent,compute_w\n0,takeoff,100,0\n9,landing,40,0\n19,takeoff,100,0\n28,landing,30,0\n";
+  const { time_s, soc, phases } = curve.curveOf(table, { flights: [{ start_s: 0 }, { start_s: 19 }] });
+  assert.deepEqual([time_s, soc], [[0, 9, 14, 19, 28], [100, 40, null, 100, 30]]);
+  assert.deepEqual(phases.map(({ name, from, to }) => [name, from, to]),
+    [["takeoff", 0, 0], ["landing", 0, 9], ["takeoff", 19, 19], ["landing", 19, 28]]);
 });
 
 /// A project whose engine keeps the names of what is written.

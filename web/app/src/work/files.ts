@@ -44,6 +44,11 @@ export async function beginsWith(file: Blob, begin: Blob): Promise<boolean> {
   }
 }
 
+/// Returns whether a file can still be read: not where it was moved, changed or deleted since it was dropped.
+export async function isReadable(file: Blob | undefined): Promise<boolean> {
+  return file?.slice(-1).arrayBuffer().then(() => true, () => false) ?? false;
+}
+
 /// Returns the place of a log that comes under a path: its own where it is known, also in part (a log that grew), else
 /// the first that is free; `is_new`: whether it is to be written there.
 export async function placeOfLog(

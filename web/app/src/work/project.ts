@@ -6,7 +6,7 @@ import { aircraftOf, linesOf, namedBy, type BatchFound } from "./batch_lines";
 import { numbers, parseCsv, track, type Csv } from "./csv";
 import { curveOf } from "./curve";
 import type { Answer, Batch, FlownFlight, Known, LogRecord, Manifest, Simulation } from "./documents";
-import { kindBesideMission, kindOf, placeOfLog, safePath, stemOf, tileName, type Dropped, type Kind } from "./files";
+import { isReadable, kindBesideMission, kindOf, placeOfLog, safePath, stemOf, tileName, type Dropped, type Kind } from "./files";
 import * as storage from "./keep";
 import { rest_ms } from "./latest";
 import { inputsShown, isByFolder, optionsOf, type Question } from "./question";
@@ -168,13 +168,15 @@ export class Project {
     const placed = new Map<string, string>();
     const places: string[] = [];
     const refused: string[] = [];
+    // Another window of this page may have kept a log of the same name since this one was opened.
+    const elsewhere = await storage.kept();
     for (const { safe, file, kind } of files) {
       if (kind === "ignored") continue;
       if (kind === "columns" && !(await isMapOfColumns(file))) {
         refused.push(safe);
         continue;
       }
-      const { place, is_new } = await this.placeOf(safe, file, kind, placed);
+      const { place, is_new } = await this.placeOf(safe, file, kind, placed, elsewhere);
       places.push(place);
       if (!is_new) continue;
       await this.engine.write(place, file);
@@ -202,17 +204,19 @@ export class Project {
     file: File,
     kind: Kind | "mission",
     placed: Map<string, string>,
+    elsewhere: Map<string, Blob>,
   ): Promise<{ place: string; is_new: boolean }> {
     const folders: Partial<Record<Kind | "mission", string>> = { mission: missions_folder, plan: plans_folder };
     const folder = folders[kind] ?? logs_folder;
     if (kind === "log" && !this.isSame(`${folder}/${safe}`, file)) {
-      const { place, is_new } = await placeOfLog(safe, file, (one) => this.files.get(`${folder}/${one}`));
+      const known = (one: string) => this.files.get(`${folder}/${one}`) ?? elsewhere.get(`${folder}/${one}`);
+      const { place, is_new } = await placeOfLog(safe, file, known);
       placed.set(stemOf(safe), place.slice(0, -safe.length));
-      return { place: `${folder}/${place}`, is_new };
+      return { place: `${folder}/${place}`, is_new: is_new || !this.files.has(`${folder}/${place}`) };
     }
     const beside = kind === "definitions" ? placed.get(stemOf(safe)) ?? "" : "";
     const place = kind === "terrain" ? `${terrain_folder}/${tileName(safe)}` : `${folder}/${beside}${safe}`;
-    return { place, is_new: !this.isSame(place, file) };
+    return { place, is_new: !this.isSame(place, file) || !(await isReadable(this.files.get(place))) };
   }
 
   private isSame(path: string, file: File): boolean {

@@ -57,6 +57,7 @@ export function inPageWords(text: string): string {
   return text
     .replace(/--capacity AH/g, "the capacity of the pack")
     .replace(/; select one with --aircraft ID/g, "; this page reads one aircraft of a log: the command flightwatt LOG --aircraft ID answers for another")
+    .replace(/cannot be read: I\/O error/g, "a log cannot be read any more: it was moved, changed or deleted since it was dropped, or its card removed; drop it again")
     .replace(/\(option --mass\)/g, "(the mass below the slider Payload)")
     .replace(/terrain \(--terrain\) names a folder of its heights/g, "drop the tiles of its heights (N47E008.hgt)")
     .replace(/--airspeed/g, "the slider Airspeed")
