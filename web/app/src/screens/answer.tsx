@@ -402,7 +402,7 @@ function CapacityAsked({ aircraft, project }: { aircraft: Aircraft; project: Pro
 }
 
 export function AnswerScreen({ project, aircraft }: { project: Project; aircraft?: Aircraft }) {
-  if (!aircraft) return <NoLogs />;
+  if (!aircraft) return <NoLogs project={project} />;
   const { now, measured, moving } = aircraft;
   if (!now)
     return aircraft.failed ? (
@@ -457,13 +457,19 @@ export function AnswerScreen({ project, aircraft }: { project: Project; aircraft
   );
 }
 
-export function NoLogs() {
+/// What the screens of an aircraft show while there is none.
+export function NoLogs({ project: { state } }: { project: Project }) {
+  if (!state.ready || state.progress) return <h1 aria-live="polite">{state.progress ? "Reading the logs" : "Opening"}</h1>;
   return (
     <>
       <h1>No aircraft yet</h1>
-      <p>
-        <a href="#logs">Drop its logs</a>: one flight gives a mean, three give chances.
-      </p>
+      {state.unused.length > 0 || state.waiting.length > 0 ? (
+        <p>None of the logs is used: <a href="#logs">why</a>.</p>
+      ) : (
+        <p>
+          <a href="#logs">Drop its logs</a>: one flight gives a mean, three give chances.
+        </p>
+      )}
     </>
   );
 }

@@ -341,7 +341,7 @@ export function FlightsScreen({ project, state }: { project: Project; state: Sta
     [state.aircraft],
   );
   const [selected, setSelected] = useState("");
-  if (rows.length === 0) return <NoLogs />;
+  if (rows.length === 0) return <NoLogs project={project} />;
   const row = rows.find((one) => one.line.path === selected) ?? rows[0];
   const packs = state.aircraft.flatMap((one) => one.now?.answer.packs ?? []);
   const count = (health: string, words: string) => {
