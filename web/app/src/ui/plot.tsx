@@ -45,24 +45,30 @@ interface PlotProps {
   onCursor?: (index: number | null) => void;
 }
 
+/// As in the words around it, whatever the language of the browser.
+const digits = new Intl.NumberFormat("en", { useGrouping: false });
+const shownNumber = (value: number | null) => (value == null ? "" : digits.format(value).replace("-", "−"));
+
 const colour = (name: string) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() || name;
 
 function options(props: PlotProps, width: number): uPlot.Options {
   const [first, last] = [props.x[0], props.x[props.x.length - 1]];
   const x_range = props.x_range;
-  const axis = { stroke: colour("ink2"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
-  const series: uPlot.Series[] = [{ label: props.x_title }];
+  const axis = { stroke: colour("ink2"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false }, values: (_: uPlot, splits: number[]) => splits.map(shownNumber) };
+  const value = (_: uPlot, at: number | null) => (at == null ? "--" : shownNumber(at));
+  const series: uPlot.Series[] = [{ label: props.x_title, value }];
   const bands: uPlot.Band[] = [];
   for (const line of props.lines) {
     const stroke = colour(line.colour);
     if (line.band) {
       bands.push({ series: [series.length + 1, series.length], fill: `${stroke}26` });
-      series.push({ label: `${line.name}, low`, width: 0, points: { show: false } });
-      series.push({ label: `${line.name}, high`, width: 0, points: { show: false } });
+      series.push({ label: `${line.name}, low`, value, width: 0, points: { show: false } });
+      series.push({ label: `${line.name}, high`, value, width: 0, points: { show: false } });
     } else {
       series.push({
         label: line.name,
+        value,
         stroke: line.points ? undefined : stroke,
         width: line.points ? 0 : 2,
         dash: line.dashed ? [6, 4] : undefined,
