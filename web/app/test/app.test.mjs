@@ -263,6 +263,18 @@ test("a plan that does not fit has what would help, and one that fits is saved f
   assert.match(await page.textContent('[aria-label="What was planned"]'), /no altitude is stated: 50 m above the ground/);
 });
 
+test("an area that is too small for its lines has a slider for their spacing", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.click('nav a[href="#plan"]');
+  await choose(page, [areaOf("small.geojson", 0.0005, 0.0002)], "Choose a plan");
+  await page.waitForSelector("[role=alert]:has-text('apart fit into the area')", patience);
+  await move(page, "Spacing of the lines", 10);
+  await page.waitForSelector(".verdict-band", patience);
+  assert.match(await page.textContent(".command code"), /--spacing 10/);
+});
+
 /// Corners of a rectangle from 43.56 N, 1.48 E on, as a file that is dropped.
 function areaOf(name, width_deg, height_deg) {
   const [x, y] = [1.48, 43.56];
@@ -408,6 +420,38 @@ test("the second visit has the logs, and Forget all has none", { skip, ...patien
   await page.waitForSelector(".empty", patience);
   await page.reload();
   await page.waitForSelector(".empty", patience);
+});
+
+test("two windows that keep logs of one name keep both", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  const other = await page.context().newPage();
+  if (!page_file) await giveNativeEngine(other, program);
+  await other.goto(address);
+  await other.waitForSelector("h1");
+  for (const [window, number] of [[page, 1], [other, 2]]) {
+    const [data, definitions] = await Promise.all(sample(number).map((file) => readFile(file)));
+    await choose(window, [named("flight.data", data), named("flight.log", definitions)]);
+    await window.waitForSelector(".log.used", patience);
+  }
+  await page.reload();
+  await page.waitForFunction(() => document.querySelectorAll(".log.used").length === 2, null, patience);
+});
+
+test("the flights on paper have each value below its head, and distances from home may have thousands", { skip, ...patience }, async (t) => {
+  const page = await open(t);
+  await dropThree(page);
+  await showAnswer(page);
+  await page.waitForSelector(".parameters", patience);
+  await page.fill(".field input", "1,500");
+  await page.press(".field input", "Tab");
+  await page.waitForFunction(() => /--home-distance 1500\b/.test(document.querySelector(".command code")?.textContent ?? ""), null, patience);
+  await page.click('nav a[href="#flights"]');
+  await page.waitForSelector(".flight-plot", patience);
+  await page.emulateMedia({ media: "print" });
+  await page.setViewportSize({ width: 718, height: 1000 });
+  const left = (cells) => cells.map((cell) => Math.round(cell.getBoundingClientRect().right));
+  const heads = await page.locator(".list thead th").evaluateAll(left);
+  assert.deepEqual(await page.locator(".list tbody tr:first-child > *").evaluateAll(left), heads);
 });
 
 test("everything is reached by the keyboard", { skip, ...patience }, async (t) => {

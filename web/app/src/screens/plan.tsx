@@ -126,16 +126,7 @@ function PlanSliders({ flown, options, change }: {
   return (
     <>
       {flown.is_area && flown.spacing != null && (
-        <Slider
-          label="Spacing of the lines"
-          value={options.spacing ?? flown.spacing}
-          min={5}
-          max={200}
-          step={1}
-          shown={quantity(options.spacing ?? flown.spacing, 0, "m")}
-          changed={options.spacing != null}
-          onChange={(spacing) => change({ spacing })}
-        />
+        <SpacingSlider value={options.spacing ?? flown.spacing} options={options} change={change} />
       )}
       {flown.is_area && flown.heading != null && (
         <Slider
@@ -562,7 +553,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
   const places = useFlownPlaces(project, aircraft);
   const shape = useShape(project, options?.plan ?? "", state.dropped);
   const onPlace = useCallback((place: Place) => setDrawing((before) => [...(before ?? []), place]), []);
-  if (!aircraft) return <NoLogs />;
+  if (!aircraft) return <NoLogs project={project} />;
   const change = (next: Partial<PlanOptions>) => options && setOptions({ ...options, ...next });
   const finish = async () => {
     if (!drawing || drawing.length < 3) return;
@@ -580,7 +571,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             ? (failed ? `${planName(options.plan)}: not flown` : `${planName(options.plan)}: computing`)
             : "Does a plan fit?"}
       </h1>}
-      {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {failed}</p></Card>}
+      {failed && <Card class="failed"><p role="alert"><Mark grade="bad" /> {inPageWords(failed)}</p></Card>}
       {shown && <Band flown={shown} answer={answered?.answer} asking={asking} />}
       <div class={`plan${options || drawing ? "" : " alone"}`}>
         <div class="plan-left">
@@ -639,6 +630,7 @@ export function PlanScreen({ project, state, aircraft }: { project: Project; sta
             answered={answered}
             flown={shown}
             last={last}
+            failed={failed}
             options={options}
             blocks={blocks}
             change={change}
@@ -675,20 +667,40 @@ interface SideProps {
   flown: FlownPlan | null;
   /// The same, or where it cannot be flown any more what was flown before: its sliders take that back.
   last: FlownPlan | null;
+  /// Why it cannot be flown.
+  failed: string;
   options: PlanOptions;
   blocks: PlanBlock[];
   change: (next: Partial<PlanOptions>) => void;
 }
 
-function PlanSide({ project, aircraft, answered, flown, last, options, blocks, change }: SideProps) {
+function SpacingSlider({ value, options, change }: { value: number } & Pick<SideProps, "options" | "change">) {
+  return (
+    <Slider
+      label="Spacing of the lines"
+      value={value}
+      min={5}
+      max={200}
+      step={1}
+      shown={quantity(value, 0, "m")}
+      changed={options.spacing != null}
+      onChange={(spacing) => change({ spacing })}
+    />
+  );
+}
+
+function PlanSide({ project, aircraft, answered, flown, last, failed, options, blocks, change }: SideProps) {
   const help = useHelp(project, aircraft, answered, flown);
-  if (!last && blocks.length === 0) return null;
+  // Of an area that was never flown, as its lines are too far apart.
+  const unfit_m = last ? null : /no lines ([\d.]+) m apart fit into the area/.exec(failed)?.[1];
+  if (!last && !unfit_m && blocks.length === 0) return null;
   const error = flown?.curve.simulation.power_model?.mean_absolute_error_percent;
   return (
     <section class="card plan-side" aria-label="Change the plan">
       {help.length > 0 && <h2>What would help</h2>}
       {help.map((one) => <HelpLine help={one} onChange={change} />)}
       <BlockChoice blocks={blocks} options={options} change={change} />
+      {unfit_m && <SpacingSlider value={options.spacing ?? Number(unfit_m)} options={options} change={change} />}
       {last && !/\.toml$/i.test(options.plan) && <PlanSliders flown={last} options={options} change={change} />}
       {flown && <SaveButtons project={project} aircraft={aircraft} answered={answered} flown={flown} />}
       {flown && (
