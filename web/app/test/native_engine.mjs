@@ -51,7 +51,9 @@ export async function giveNativeEngine(page, program) {
     globalThis.flightwattEngine = {
       async run(args, onErrorLine) {
         const begun = cancelled;
-        globalThis.nativeErrorLines = (text) => text.split("\n").filter(Boolean).forEach((line) => onErrorLine?.(line));
+        globalThis.nativeErrorLines = (text) => {
+          if (begun === cancelled) text.split("\n").filter(Boolean).forEach((line) => onErrorLine?.(line));
+        };
         const result = await globalThis.nativeRun(args);
         if (begun !== cancelled) throw Object.assign(new Error("cancelled"), { name: "Cancelled" });
         return result;
