@@ -98,7 +98,9 @@ std::vector<SurveyCell> survey_cells(const std::vector<Polygon>& areas, const Cl
         const auto before = cells.size();
         add_cells(area, closed, spacing_m, course_deg, cells);
         if (cells.size() == before)
-            throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000; state another spacing", spacing_m));
+            throw InputError(
+                where, fmt::format("no lines {} m apart fit into the area, or more than 5000; state another spacing",
+                                   spacing_m));
     }
     return cells;
 }

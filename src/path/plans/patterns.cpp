@@ -64,7 +64,9 @@ std::vector<SurveyLine> survey_lines(const Polygon& polygon, double spacing_m, d
     const LinedPolygon lined(polygon, course_deg);
     auto lines = lined.lines_between(lined.left_m(), lined.right_m(), spacing_m);
     if (!lines.empty()) return lines;
-    throw InputError(where, fmt::format("no lines {} m apart fit into the area, or more than 5000; state another spacing", spacing_m));
+    throw InputError(
+        where,
+        fmt::format("no lines {} m apart fit into the area, or more than 5000; state another spacing", spacing_m));
 }
 
 bool begins_with_last(const std::vector<SurveyLine>& lines, const LocalPosition& at) {
