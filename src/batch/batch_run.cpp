@@ -438,7 +438,7 @@ std::vector<mechanical::Exclusion> exclude_hover(BatchFlights& flights, const st
     }
     for (const auto& exclusion : excluded)
         for (auto& flight : flights)
-            if (exclusion.flight == flight.record.flight || exclusion.flight.starts_with(flight.record.flight + "#"))
+            if (mechanical::is_sortie_of(exclusion.flight, flight.record.flight))
                 flight.selection.exclusions.push_back(exclusion);
     return excluded;
 }

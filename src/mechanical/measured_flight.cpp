@@ -89,6 +89,10 @@ std::string sortie_name(const std::string& flight, std::size_t sortie) {
     return sortie == 1 ? flight : fmt::format("{}#{}", flight, sortie);
 }
 
+bool is_sortie_of(const std::string& sortie, const std::string& flight) {
+    return sortie == flight || sortie.starts_with(flight + "#");
+}
+
 std::optional<double> pack_voltage_v(const flight::FlightData& data) {
     constexpr double exceeded_by = 0.01;
     if (data.voltage_v.value.empty()) return std::nullopt;
@@ -144,7 +148,8 @@ std::vector<Exclusion> exclude_hover(std::vector<MeasuredFlight>& flights, const
     if (std::ranges::all_of(flights, &MeasuredFlight::only_hovers)) return excluded;
     std::erase_if(flights, [&](const auto& flight) {
         const auto& name = flight.samples.flight;
-        if (!flight.only_hovers || keep.contains(name.substr(0, name.find('#')))) return false;
+        const auto is_of = [&](const std::string& log) { return is_sortie_of(name, log); };
+        if (!flight.only_hovers || std::ranges::any_of(keep, is_of)) return false;
         excluded.push_back({name, std::nullopt, hover_reason()});
         return true;
     });

@@ -46,6 +46,9 @@ std::string to_string(const Exclusion& exclusion);
 /// The name of a sortie: NAME, and NAME#2 from the second on.
 std::string sortie_name(const std::string& flight, std::size_t sortie);
 
+/// Returns whether a name is that of a sortie of the flight.
+bool is_sortie_of(const std::string& sortie, const std::string& flight);
+
 /// The voltage that 1 % of the log's samples exceed: single samples may be damaged.
 std::optional<double> pack_voltage_v(const flight::FlightData& data);
 

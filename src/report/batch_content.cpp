@@ -64,7 +64,7 @@ void add(std::optional<double>& sum, const std::optional<double>& more) {
 
 std::string_view fitted_part(const ReportFlight& flight) {
     if (flight.exclusions.empty()) return "all";
-    return flight.unusable_power.empty() ? "in part" : "no";
+    return flight.is_fitted && flight.unusable_power.empty() ? "in part" : "no";
 }
 
 BatchContent read_batch_content(const std::filesystem::path& out) {
@@ -99,11 +99,12 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         content.flights.push_back(std::move(flight));
     }
     for (const auto& exclusion : exclude_hover(content.measured, fit.keep)) {
-        const auto name = exclusion.flight.substr(0, exclusion.flight.find('#'));
-        auto& flight = *std::ranges::find(content.flights, name, &ReportFlight::name);
-        flight.exclusions.push_back(to_string(exclusion));
-        const auto is_of_log = [&](const auto& measured) { return measured.samples.flight.starts_with(name + "#"); };
-        if (std::ranges::none_of(content.measured, is_of_log)) flight.unusable_power = exclusion.reason;
+        const auto flight = std::ranges::find_if(
+            content.flights, [&](const auto& of) { return mechanical::is_sortie_of(exclusion.flight, of.name); });
+        flight->exclusions.push_back(to_string(exclusion));
+        flight->is_fitted = std::ranges::any_of(content.measured, [&](const auto& measured) {
+            return mechanical::is_sortie_of(measured.samples.flight, flight->name);
+        });
     }
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     for_each_in_parallel(content.flights.size(), [&](std::size_t i) {

@@ -38,6 +38,7 @@ struct ReportFlight {
     std::vector<std::string> notes = {};       ///< harmless diagnostics
     std::vector<std::string> exclusions = {};  ///< parts that the fit does not use, with reasons
     std::string unusable_power = {};           ///< reason why its power record is not used; empty if it is
+    bool is_fitted = true;                     ///< false: the fit leaves it out for another reason
     batch::FlightAircraft aircraft = {};       ///< aircraft of an accepted flight
     FlightSummary facts = {};                  ///< of an accepted flight in a batch's folder
 };

@@ -2,11 +2,15 @@
 
 #include "report/batch_content.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "flight/select.h"
 #include "helpers/running_program.h"
 #include "helpers/test_paths.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::report {
@@ -41,11 +45,49 @@ TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {
     EXPECT_TRUE(content.measured.empty());
 }
 
+/// The log of a VTOL that is on its wing (w) or hovers (h), a sortie after the other.
+std::string vtol_log(const std::string& name, const std::string& sorties) {
+    auto text = fmt::format(
+        "# format = 1\n# flight = \"{}\"\n# aircraft_id = \"7\"\n# aircraft_name = \"VTOL\"\n"
+        "# firmware = \"fixedwing\"\ntime_s,power_w,voltage_v,current_a,altitude_m,throttle_percent,vtol_state\n",
+        name);
+    int time_s = 0;
+    for (const char flown : sorties) {
+        for (int i = 0; i < 300; ++i, ++time_s) {
+            const double height_m = std::clamp(3.0 * std::min(i - 30, 270 - i), 0.0, 30.0);
+            const bool is_on_wing = flown == 'w' && height_m == 30.0;
+            const double power_w = height_m == 0.0 ? 2.0 : (is_on_wing ? 100.0 : 300.0) + i % 7;
+            text += fmt::format("{},{},24,{},{},{},{}\n", time_s, power_w, power_w / 24.0, height_m,
+                                height_m > 0.0 ? 50 : 0, is_on_wing ? 4 : 3);
+        }
+    }
+    return text;
+}
+
+/// The page left the log out of the battery, and called it not fitted, though its first sortie was.
+TEST(BatchContent, OnlyTheHoverOfAVtolIsNotFitted) {
+    const auto folder = test::scratch_dir();
+    write_file_atomically(folder / "wing.csv", vtol_log("wing", "wh"));
+    write_file_atomically(folder / "hover#a.csv", vtol_log("hover#a", "h"));
+    const auto run = test::run_shell("flightwatt batch wing.csv 'hover#a.csv' -o out", folder);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const auto content = read_batch_content(folder / "out");
+    ASSERT_EQ(content.flights.size(), 2U);
+    for (const auto& flight : content.flights) {
+        EXPECT_EQ(fitted_part(flight), flight.name == "wing" ? "in part" : "no") << flight.name;
+        EXPECT_EQ(flight.unusable_power, "") << "the battery is that of all";
+        EXPECT_EQ(flight.exclusions.size(), 1U) << flight.name;
+    }
+}
+
 TEST(FittedPart, FollowsExclusionsAndThePowerRecord) {
     ReportFlight flight;
     EXPECT_EQ(fitted_part(flight), "all");
     flight.exclusions = {"cruise is excluded: the log ends inside of it"};
     EXPECT_EQ(fitted_part(flight), "in part");
+    flight.is_fitted = false;
+    EXPECT_EQ(fitted_part(flight), "no");
+    flight.is_fitted = true;
     flight.unusable_power = "its power does not change at all";
     EXPECT_EQ(fitted_part(flight), "no");
 }

@@ -203,7 +203,7 @@ std::string page_title(Flights flights, std::size_t missions) {
 Json aircraft_panel(const Findings& answers, Flights flights) {
     std::vector<FlightSummary> flown;
     for (const auto& flight : flights)
-        if (flight.rejected.empty() && flight.unusable_power.empty()) flown.push_back(flight.facts);
+        if (flight.rejected.empty() && flight.unusable_power.empty() && flight.is_fitted) flown.push_back(flight.facts);
     const bool is_one = by_aircraft(flights).size() == 1;
     auto facts = Json::array();
     if (is_one) add_cruise(facts, flown);
