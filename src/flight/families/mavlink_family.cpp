@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -284,6 +285,7 @@ void leave_out_other_batteries(telemetry::MessageTable& battery, std::vector<std
 
 /// Whether the log has one battery, whose voltage and current the status states too.
 bool has_its_power(const telemetry::MessageTable& status, const telemetry::MessageTable& battery) {
+    if (battery.empty()) return false;
     const auto* id = battery.column("id");
     const bool is_one = id == nullptr || std::ranges::count(id->values, id->values.front()) ==
                                              static_cast<std::ptrdiff_t>(id->values.size());
@@ -356,15 +358,17 @@ struct Silence {
     double duration_s;
 };
 
-/// The first silence: from the first status on, if the battery's message begins in flight, or between two of its messages;
-/// std::nullopt without one.
+/// The first silence: from the first status on, if the battery's message begins in flight, also perhaps, as no heartbeat
+/// is that of an armed vehicle; or between two of its messages; std::nullopt without one.
 std::optional<Silence> find_silence(const telemetry::MessageTable& status, const telemetry::MessageTable& battery,
                                     const telemetry::MessageTable* heartbeat) {
     constexpr double pause_s = 30.0;  // less is not worth the battery's counters
     constexpr double dense_s = 5.0;
-    const double first_s = status.time_s.front();
-    if (begins_in_flight(battery, status, heartbeat, pause_s))
-        return Silence{first_s, battery.time_s.front() - first_s};
+    constexpr double ever_s = std::numeric_limits<double>::infinity();
+    const Silence at_first{status.time_s.front(), battery.time_s.front() - status.time_s.front()};
+    const bool shows_flight = states_armed(heartbeat, true, -ever_s, ever_s);
+    if (shows_flight ? begins_in_flight(battery, status, heartbeat, pause_s) : at_first.duration_s > pause_s)
+        return at_first;
     for (std::size_t i = 1; i < battery.time_s.size(); ++i) {
         const Silence silence{battery.time_s[i - 1], battery.time_s[i] - battery.time_s[i - 1]};
         if (silence.duration_s <= pause_s) continue;

@@ -223,7 +223,7 @@ TEST(MavlinkFamily, TakesTheStatusThatContinuesWhereTheBatteryHasEnded) {
 }
 
 /// A flight of which a message is missing from and to these seconds.
-LoadedFlight flight_without(std::uint32_t id, int from_s, int to_s) {
+LoadedFlight flight_without(std::uint32_t id, int from_s, int to_s, bool has_heartbeat = true) {
     test::MavlinkSender vehicle;
     std::string log;
     for (int i = 0; i < 300; ++i) {
@@ -233,7 +233,7 @@ LoadedFlight flight_without(std::uint32_t id, int from_s, int to_s) {
         const auto add = [&](std::uint32_t of, const std::string& packet) {
             if (of != id || i < from_s || i >= to_s) log += test::tlog_entry(i, packet);
         };
-        add(0, vehicle.heartbeat(2, 3, flies ? 209 : 81));
+        if (has_heartbeat) add(0, vehicle.heartbeat(2, 3, flies ? 209 : 81));
         add(1, vehicle.status(15'800, current_ca));
         add(147, vehicle.battery({15'800}, current_ca, 4 * std::clamp(i - 60, 0, 210)));
         add(33, vehicle.position(i, height_m));
@@ -259,6 +259,10 @@ TEST(MavlinkFamily, HasTheWholeFlightWhereOneMessageBeginsOrEndsInIt) {
         EXPECT_NEAR(flight.phases.sorties.front().end_s(), 270.0, 2.0);
         EXPECT_NEAR(energy_wh(flight), whole_wh, 0.02 * whole_wh);
     }
+}
+
+TEST(MavlinkFamily, HasThePowerOfTheStatusWhereNoHeartbeatShowsThatTheBatteryBeginsInFlight) {
+    EXPECT_NEAR(flight_without(147, 0, 150, false).data.power_w.time_s.front(), 0.0, 1.0);
 }
 
 TEST(MavlinkFamily, CountsByTheBatteryThatBeginsBeforeTheFlight) {
