@@ -304,8 +304,8 @@ std::string aircraft_line(const AircraftAnswer& answer) {
 
 std::vector<AnswerLine> answer_lines(const AircraftAnswer& answer) {
     if (const auto& why = answer.no_answer; !why.empty()) {
-        const bool lacks_subject = why.starts_with("has ") || why.starts_with("is ");  // messages begin with the file
-        return {{"No answer", (lacks_subject ? "the log " : "") + why, ""}};
+        const auto* subject = why.starts_with("has ") ? "the log " : why.starts_with("is ") ? "the file " : "";
+        return {{"No answer", subject + why, ""}};  // messages begin with the file
     }
     std::vector<AnswerLine> lines;
     std::set<std::string> given;

@@ -60,6 +60,8 @@ TEST(AnswerText, AReasonWithoutASubjectIsThatOfTheLog) {
     AircraftAnswer answer;
     answer.no_answer = "has no flight in 4 s; no motion";
     EXPECT_THAT(text_of(answer), HasSubstr("No answer the log has no flight in 4 s; no motion"));
+    answer.no_answer = "is no log that is known";
+    EXPECT_THAT(text_of(answer), HasSubstr("No answer the file is no log that is known"));
     answer.no_answer = "no flight has measured power";
     EXPECT_THAT(text_of(answer), HasSubstr("No answer no flight has measured power"));
 }
