@@ -210,6 +210,7 @@ int main(int argc, char** argv) {
         word = argc > 2 ? argv[2] : "--help";
         if (const auto stage = find_stage(word)) return show_help(*stage);
     }
-    if (argc > 1 && are_for_answer({argv + 1, argv + argc})) return stages::answer_stage(argc, argv);
+    if (argc > 1 && argv[1] != std::string_view("help") && are_for_answer({argv + 1, argv + argc}))
+        return stages::answer_stage(argc, argv);
     return cli::run_guarded("flightwatt", [&] { return run_front(word); });
 }
