@@ -153,9 +153,9 @@ std::string payloads_note(const std::vector<FlightFacts>& flights) {
     const auto [low, high] = std::ranges::minmax(stated_kg);
     const auto unstated = flights.size() - stated_kg.size();
     if (low == high && (unstated == 0 || high == 0.0)) return "";
-    return fmt::format(
-        "the flights carried {:g} to {:g} kg{}: power and time are of their mean; --payload answers for one", low, high,
-        unstated > 0 ? fmt::format(" and {} state no payload", unstated) : "");
+    return fmt::format("the flights carried {}{:g} kg{}: power and time are of their mean; --payload answers for one",
+                       low < high ? fmt::format("{:g} to ", low) : "", high,
+                       unstated > 0 ? fmt::format(", and {} state no payload", unstated) : "");
 }
 
 /// The mission of the question with a given duration of its cruise.

@@ -166,7 +166,7 @@ TEST_F(AnswerTest, NamesThePayloadsThatItAverages) {
     aircraft.flights[1].payload_kg = 0.0;
     EXPECT_THAT(answer_endurance(aircraft, {}).notes, averaged);
     aircraft.flights[1].payload_kg.reset();
-    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Contains(HasSubstr("and 1 state no payload")));
+    EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Contains(HasSubstr("kg, and 1 state no payload")));
     aircraft.flights[0].payload_kg.reset();
     EXPECT_THAT(answer_endurance(aircraft, {}).notes, testing::Not(averaged));
 }
