@@ -66,9 +66,9 @@ Fields<FlightTrendData> record_fields(const FlightTrendData*) {
         return r.capacity_ah ? std::optional(r.capacity_interval_ah) : std::nullopt;
     };
     Fields<R> quantities;
-    for (const auto& [key, title, value] : trend_quantities()) {
-        const auto get = [of = value](const R& r) { return of(r); };
-        quantities.push_back(field(key, get, title, csv_column{}));
+    for (const auto& quantity : trend_quantities()) {
+        const auto get = [of = quantity.value](const R& r) { return of(r); };
+        quantities.push_back(field(quantity.name, get, quantity.title, csv_column{}));
     }
     return list_fields<R>(
         field("flight", &R::name, "name of the flight", csv_column{}),

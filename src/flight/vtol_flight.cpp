@@ -52,6 +52,10 @@ std::optional<TimeInterval> wing_flight(const FlightData& data, double start_s, 
     return TimeInterval{first->start_s, std::find_if(spans.rbegin(), spans.rend(), is_wing)->end_s};
 }
 
+bool only_hovers(const FlightData& data, const Sortie& sortie) {
+    return !data.vtol_state.empty() && !wing_flight(data, sortie.start_s(), sortie.end_s()).has_value();
+}
+
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie) {
     double lifted_s = 0.0;
     double wing_s = 0.0;

@@ -31,6 +31,9 @@ bool is_on_wing(const FlightData& data, double start_s, double end_s);
 /// Returns the time from the first to the last wing flight of a VTOL between two times; std::nullopt without any.
 std::optional<TimeInterval> wing_flight(const FlightData& data, double start_s, double end_s);
 
+/// Returns whether a VTOL is never on its wing in a sortie; false for other aircraft.
+bool only_hovers(const FlightData& data, const Sortie& sortie);
+
 /// Returns a warning of hover or transitions within the cruise of a VTOL, or instead of it; empty without.
 std::string hover_in_cruise(const FlightData& data, const Sortie& sortie);
 

@@ -124,8 +124,7 @@ MeasuredFlights extract_flights(const flight::FlightData& data, const flight::Fl
             flight.samples.phases[span.phase] = std::move(samples);
         }
         if (!has_any_phase(flight)) continue;
-        flight.only_hovers =
-            !data.vtol_state.empty() && !wing_flight(data, sortie.start_s(), sortie.end_s()).has_value();
+        flight.only_hovers = only_hovers(data, sortie);
         flight.motion = bin_flight(data, phase_spans(sortie));
         if (!flight.motion.is_rotorcraft && flight.motion.bins.size() < min_bins)
             flight.motion = bin_flight(data, phase_spans(sortie), short_bin_s);

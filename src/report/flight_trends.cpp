@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "cli/output/pack_output.h"
 #include "flight/flight_identity.h"
+#include "flight/vtol_flight.h"
 #include "report/document/columns.h"
 
 #include <algorithm>
@@ -34,8 +35,9 @@ constexpr std::array<TrendQuantity, 6> quantities{{
     {"cruise_power_w", "cruise power [W]",
      [](const FlightTrendData& f) { return f.facts.mean_power_w[flight::Phase::cruise]; }},
     {"resistance_ohm", "resistance [ohm]",
-     [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; }},
-    {"capacity_percent", "capacity [% of mean]", [](const FlightTrendData& f) { return f.capacity_percent; }},
+     [](const FlightTrendData& f) { return f.resistance ? std::optional(f.resistance->value_ohm) : std::nullopt; },
+     true},
+    {"capacity_percent", "capacity [% of mean]", [](const FlightTrendData& f) { return f.capacity_percent; }, true},
 }};
 
 std::set<std::string> aircraft_names(std::span<const FlightTrendData> flights) {
@@ -98,6 +100,8 @@ FlightTrendData extract_trend_data(const ReportFlight& flight, const std::string
     flown.aircraft_id = flight.data.aircraft_id;
     flown.aircraft_name = flight.data.aircraft_name;
     flown.facts = summarize_flight(flight);
+    flown.only_hovers = std::ranges::all_of(
+        flight.phases.sorties, [&](const auto& sortie) { return flight::only_hovers(flight.data, sortie); });
     try {
         flown.uses = answer::pack_uses(flight.data, battery::discharge_records(flight.data).records, folder);
     } catch (const InputError& error) {
@@ -136,10 +140,12 @@ answer::PackLedger add_state_of_health(std::vector<FlightTrendData>& flights, st
 std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights) {
     std::vector<AircraftTrend> trends;
     for (const auto& aircraft : aircraft_names(flights)) {
-        for (const auto& [name, title, of] : quantities) {
+        const bool all_hover = std::ranges::all_of(
+            flights, [&](const auto& flight) { return flight.aircraft != aircraft || flight.only_hovers; });
+        for (const auto& [name, title, of, is_of_pack] : quantities) {
             AircraftTrend trend{aircraft, name, {}, {}};
             for (const auto& flight : flights) {
-                if (flight.aircraft != aircraft) continue;
+                if (flight.aircraft != aircraft || (flight.only_hovers && !all_hover && !is_of_pack)) continue;
                 const auto value = of(flight);
                 trend.aircraft_id = flight.aircraft_id;
                 trend.aircraft_name = flight.aircraft_name;

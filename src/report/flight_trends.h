@@ -29,6 +29,7 @@ struct FlightTrendData {
     Interval capacity_interval_ah;
     std::optional<double> capacity_percent;  ///< capacity in percent of the mean of the flights, which may be a guess
     std::optional<double> charge_ah;         ///< charge drawn from the pack, also on the ground
+    bool only_hovers = false;                ///< a VTOL that is never on its wing
 };
 
 /// Collects the quantities of an accepted flight; `folder` is that of its log.
@@ -46,6 +47,7 @@ struct TrendQuantity {
     const char* name;   ///< name with its unit, as in files
     const char* title;  ///< short name, as in figures
     std::optional<double> (*value)(const FlightTrendData&);
+    bool is_of_pack = false;
 };
 
 /// Returns the quantities whose trends are estimated; not the charge drawn, which depends on the length of the flight.
@@ -61,7 +63,8 @@ struct AircraftTrend {
     std::string aircraft_name = {};
 };
 
-/// Estimates the trends of all quantities of each aircraft.
+/// Estimates the trends of all quantities of each aircraft; those of its power without flights of a VTOL that only hover
+/// where others are on the wing.
 std::vector<AircraftTrend> estimate_trends(std::span<const FlightTrendData> flights);
 
 Fields<AircraftTrend> record_fields(const AircraftTrend*);

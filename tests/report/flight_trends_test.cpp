@@ -124,6 +124,24 @@ TEST(Trends, AreDrawnFromFiveFlightsOnThreeDaysOn) {
     EXPECT_THAT(tables.text, HasSubstr("\\label{tab:trends}"));
 }
 
+/// Five flights on the wing and then four in hover had a cruise power that rises.
+TEST(Trends, OfThePowerOfAVtolLeaveOutHover) {
+    std::vector<FlightTrendData> flights(9);
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        flights[i].only_hovers = i >= 5;
+        flights[i].facts.start_clock_s = 30.0 * seconds_per_day * static_cast<double>(i);
+        flights[i].facts.mean_power_w[flight::Phase::cruise] = flights[i].only_hovers ? 300.0 : 100.0;
+        flights[i].capacity_percent = 100.0;
+    }
+    auto trends = by_quantity(estimate_trends(flights));
+    EXPECT_EQ(trends.at("cruise_power_w").flights, 5U);
+    EXPECT_EQ(trends.at("cruise_power_w").per_day, 0.0);
+    EXPECT_EQ(trends.at("capacity_percent").flights, 9U);
+    for (auto& flight : flights) flight.only_hovers = true;
+    trends = by_quantity(estimate_trends(flights));
+    EXPECT_EQ(trends.at("cruise_power_w").flights, 9U) << "all hover";
+}
+
 TEST(Trends, OfCapacitiesAreInPercentOfTheirMean) {
     std::vector<FlightTrendData> flights(5);
     for (std::size_t f = 0; f < flights.size(); ++f) {
