@@ -5,6 +5,7 @@
 #include "base/units.h"
 #include "battery/landing_forecast.h"
 #include "mechanical/prediction.h"
+#include "mechanical/speed_to_fly.h"
 #include "mission/sampled_flights.h"
 #include "path/trajectory.h"
 
@@ -241,10 +242,12 @@ mission::MissionSetup return_mission(const FailsafeRequest& request, const WayHo
     setup.battery = request.battery;
     setup.duration_s[landing] = request.model.phases[landing].duration_s;
     if (way.missing.empty()) {
-        auto power = request.model.physical.value_or(mission::constant_cruise_power(request.model));
-        if (request.model.physical) add_constant_power(power_beyond_straight_flight_w(request.model), power);
+        auto model = request.model;
+        if (model.physical) model.physical = mechanical::with_cost_of_airspeed(*std::move(model.physical));
+        auto power = model.physical.value_or(mission::constant_cruise_power(model));
+        if (model.physical) add_constant_power(power_beyond_straight_flight_w(model), power);
         set_cruise_path(setup, {{{way.leg}}, way.wind, std::move(power)});
-        if (!request.model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
+        if (!model.physical) setup.cruise_level = measured_cruise(request.model, setup.duration_s[cruise]);
         return setup;
     }
     setup.duration_s[cruise] = request.model.phases[cruise].duration_s;

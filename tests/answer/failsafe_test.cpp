@@ -169,6 +169,27 @@ TEST(FailsafeCard, NeedsMoreAgainstAStrongerWindAndFromFarther) {
     EXPECT_NEAR(low_mah(0.0, 5.0), 3200.0 * 0.2035, 10.0) << "at home: landing and reserve";
 }
 
+/// Whole flights that are predicted no better with drag made the fastest way home the cheapest.
+TEST(FailsafeCard, HasTheDragThatTheFlightsShowOnAFasterWayHome) {
+    using enum mechanical::PowerTerm;
+    auto request = wing_request();
+    auto& physical = *request.model.physical;
+    physical.terms = {constant};
+    physical.coefficients = {};
+    physical.coefficients[constant] = 24.0;
+    physical.covariance = {{0.01}};
+    physical.level_sd = 0.05;
+    physical.degrees_of_freedom = 4.0;
+    physical.speed_terms = {{drag, induced}, {}, {{1e-8, 0.0}, {0.0, 1.0}}, 4.0};
+    physical.speed_terms->coefficients[drag] = 0.006;
+    physical.speed_terms->coefficients[induced] = 100.0;
+    const auto at = [&](double airspeed_m_per_s) {
+        request.airspeed_m_per_s = airspeed_m_per_s;
+        return make_failsafe_card(request).low->remaining_mah;
+    };
+    EXPECT_GT(at(20.0), at(13.0));
+}
+
 TEST(FailsafeCard, TakesTheWindFromAheadUnlessTheCourseIsKnown) {
     auto request = wing_request();
     request.wind.from_deg = 90.0;

@@ -9,6 +9,7 @@
 #include "live/received_links.h"
 #include "mechanical/mechanical_model.h"
 #include "mechanical/prediction.h"
+#include "mechanical/speed_to_fly.h"
 #include "mission/mission_file.h"
 #include "mission/new_mission_plan.h"
 #include "telemetry/autopilot_log.h"
@@ -55,6 +56,7 @@ PredictionInput read_model_basis(const StageCall& call, const BasisArguments& ar
     if (!arguments.airspeed_m_per_s) return basis;
     basis.motion = mechanical::FlightState{.airspeed_m_per_s = *arguments.airspeed_m_per_s};
     if (arguments.climb_m_per_s) basis.motion->climb_m_per_s = *arguments.climb_m_per_s;
+    if (auto& physical = basis.model.physical) physical = mechanical::with_cost_of_airspeed(*std::move(physical));
     live::require_physical(basis.model, file, "--airspeed");
     return basis;
 }
