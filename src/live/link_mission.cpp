@@ -84,7 +84,7 @@ std::vector<std::string> LinkMission::requests(double now_s) {
     return packets;
 }
 
-/// Nearer is the same home: it is stated anew with each position of a receiver.
+/// Nearer is the same home: it is stated again with each position of a receiver.
 bool LinkMission::is_elsewhere(const Place& home, const Place& than) {
     constexpr double near_m = 30.0;
     constexpr double metre_per_degree = 111'320.0;

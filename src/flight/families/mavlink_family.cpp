@@ -362,7 +362,7 @@ struct Silence {
 /// is that of an armed vehicle; or between two of its messages; std::nullopt without one.
 std::optional<Silence> find_silence(const telemetry::MessageTable& status, const telemetry::MessageTable& battery,
                                     const telemetry::MessageTable* heartbeat) {
-    constexpr double pause_s = 30.0;  // less is not worth the battery's counters
+    constexpr double pause_s = 30.0;  // for less the counters of the battery are kept
     constexpr double dense_s = 5.0;
     constexpr double ever_s = std::numeric_limits<double>::infinity();
     const Silence at_first{status.time_s.front(), battery.time_s.front() - status.time_s.front()};
