@@ -19,10 +19,10 @@ struct MissionPlan {
 /// Plans a mission and simulates the result; plans again with a stricter reserve where the simulation misses it by
 /// rounding. With `probability`, that fraction of the plan's drawn flights (sampling/landing_distribution.h) keeps the
 /// reserve; the bound is then that of all which keep the reserve as modelled, without a margin. Infeasible plans are
-/// returned as such. Where the lines over an area are chosen, too, plans the schedule for each of the ways to cover it, beginning
-/// with the greatest bound, until no other one can have more utility; the bound is that of all. Of infeasible ones,
-/// returns the one with the most charge left. Throws InputError without utilities or for too many choices, with `probability` also as
-/// require_known_spread.
+/// returned as such. Where the lines over an area are chosen, too, plans the schedule for each of the ways to cover it,
+/// beginning with the greatest bound, until no other one can have more utility; the bound is that of all. Of infeasible
+/// ones, returns the one with the most charge left. Throws InputError without utilities or for too many choices, with
+/// `probability` also as require_known_spread.
 MissionPlan plan_mission(const PlanningProblem& problem, const std::optional<double>& probability = std::nullopt);
 
 /// Whether the variability of any quantity between flights is known.
