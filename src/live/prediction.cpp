@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "live/state/soc_estimation.h"
+#include "live/state/voltage_check.h"
 #include "path/path.h"
 #include "path/trajectory.h"
 

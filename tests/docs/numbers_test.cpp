@@ -55,7 +55,7 @@ const std::vector<Statement> statements{
     {"exports.md", "`BAT_EMERGEN_THR` to 0.1;", "exchange/failsafe_parameters.cpp", "{\"BAT_EMERGEN_THR\", 0.03, 0.1}"},
     {"live.md", "below the reserve is 5 % or more", "live/state/moment.cpp", "caution_probability = 0.05;"},
     {"live.md", "or more; 20 % or more", "live/state/moment.cpp", "alarm_probability = 0.20;"},
-    {"live.md", "0.3 V below the battery's model", "live/state/moment.cpp", "failing_cell_v = 0.3;"},
+    {"live.md", "0.3 V below the battery's model", "live/state/voltage_check.h", "failing_cell_v = 0.3;"},
     {"live.md", "as a median over one minute", "live/state/soc_estimation.cpp", "watched_s = 60.0;"},
     {"live.md", "a time more than 10 s off", "live/state/telemetry_store.h", "max_off_s = 10.0;"},
     {"live.md", "once four more lines confirm it", "live/state/telemetry_store.h", "min_confirmations = 5;"},

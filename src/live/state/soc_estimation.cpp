@@ -10,13 +10,10 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <fmt/format.h>
 
 namespace flightwatt::live {
 namespace {
 
-constexpr double watched_s = 60.0;           // for the voltage
-constexpr std::size_t enough_samples = 5;    // in there
 constexpr double failed_percent = -200.0;    // surplus where the battery fails before the landing
 constexpr double other_pack_percent = 15.0;  // increase of the resting state of charge that only another pack explains
 
@@ -68,33 +65,6 @@ InitialCharge initial_of(const PredictionInput& input, const std::optional<Initi
 
 }  // namespace
 
-std::optional<VoltageCheck> check_voltage(const battery::Battery& battery, const battery::DischargeRecord& record,
-                                          double initial_soc_percent) {
-    if (!battery.thevenin || record.time_s.empty()) return std::nullopt;
-    const auto settled_a = rc_branch_current_a(record, battery.thevenin->rc_time_constant_s);
-    std::vector<double> off_v;
-    std::vector<double> rest_v;
-    for (std::size_t i = record.time_s.size(); i-- > 0 && record.time_s[i] >= record.time_s.back() - watched_s;) {
-        if (!record.used[i]) continue;
-        const double lost_v =
-            battery.resistance_ohm * record.current_a[i] + battery.thevenin->rc_resistance_ohm * settled_a[i];
-        rest_v.push_back(record.voltage_v[i] + lost_v);
-        const auto soc = soc_at(battery, record, initial_soc_percent, record.time_s[i]);
-        off_v.push_back(rest_v.back() - open_circuit_voltage_v(battery, std::clamp(*soc, 0.0, 100.0)));
-    }
-    if (off_v.size() < enough_samples) return std::nullopt;
-    const double now_v = median(std::move(rest_v));
-    return VoltageCheck{median(std::move(off_v)), battery::resting_soc_percent(battery, now_v),
-                        battery::resting_soc_sd_percent(battery, now_v)};
-}
-
-std::string voltage_warning(double counted_percent, double by_voltage_percent) {
-    return fmt::format(
-        "the voltage shows {:.0f} % of charge where {:.0f} % were counted: the prediction is by the voltage; land "
-        "early, and check cells and label of the pack",
-        by_voltage_percent, counted_percent);
-}
-
 void use_voltage_if_lower(LiveBattery& now) {
     if (!now.state || !now.soc_by_voltage_percent || *now.soc_by_voltage_percent >= now.state->soc_percent) return;
     now.state->soc_percent = *now.soc_by_voltage_percent;
@@ -104,13 +74,6 @@ void use_voltage_if_lower(LiveBattery& now) {
 BatteryNow battery_now(const LiveBattery& now) {
     if (now.is_by_voltage) return {now.state.value(), 0.0, {now.state->soc_percent, now.soc_by_voltage_sd_percent}};
     return {now.state.value(), now.soc_percent ? now.drawn_ah.value_or(0.0) : 0.0, now.initial};
-}
-
-std::optional<double> soc_at(const battery::Battery& battery, const battery::DischargeRecord& record,
-                             double initial_soc_percent, double time_s) {
-    const auto after = flight::first_after(record.time_s, time_s);
-    if (after == 0) return std::nullopt;
-    return initial_soc_percent - units::percentage(record.charge_ah[after - 1], battery.capacity_ah);
 }
 
 LiveBattery estimate_soc(const PredictionInput& input, const std::optional<InitialCharge>& carried,
