@@ -263,7 +263,8 @@ void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState&
     if (is_counted && input_->initial_soc_percent)
         estimate_soc_from_counter(data.charge_ah, input_->battery->capacity_ah, *input_->initial_soc_percent,
                                   *state.battery);
-    if (contradicts_charge(state, alarms_)) use_voltage_if_lower(*state.battery);
+    // Without the alarm's delay, as predict has none.
+    if (state.battery->voltage_residual_v.value_or(0.0) <= -failing_cell_v) use_voltage_if_lower(*state.battery);
 }
 
 /// Why there can be no prediction now; empty: there can.

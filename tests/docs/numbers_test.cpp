@@ -56,7 +56,7 @@ const std::vector<Statement> statements{
     {"live.md", "below the reserve is 5 % or more", "live/state/moment.cpp", "caution_probability = 0.05;"},
     {"live.md", "or more; 20 % or more", "live/state/moment.cpp", "alarm_probability = 0.20;"},
     {"live.md", "0.3 V below the battery's model", "live/state/voltage_check.h", "failing_cell_v = 0.3;"},
-    {"live.md", "as a median over one minute", "live/state/soc_estimation.cpp", "watched_s = 60.0;"},
+    {"live.md", "as a median over one minute", "live/state/voltage_check.h", "watched_s = 60.0;"},
     {"live.md", "a time more than 10 s off", "live/state/telemetry_store.h", "max_off_s = 10.0;"},
     {"live.md", "once four more lines confirm it", "live/state/telemetry_store.h", "min_confirmations = 5;"},
     {"live.md", "backwards by less than a minute", "live/state/telemetry_store.h", "max_step_s = 60.0;"},

@@ -131,6 +131,13 @@ void add_reserve_alarm_without_prediction(const LiveState& state, double reserve
                           "As before: nothing shows that the reserve is kept"});
 }
 
+/// Whether the voltage is so far below the battery's model that an alarm is raised, or stays: in the air, and as a caution
+/// on the ground, as a pack that lost charge may be flown again.
+bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before) {
+    const double missing_v = state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
+    return reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty());
+}
+
 }  // namespace
 
 bool states_flight(const flight::FlightData& data) {
@@ -240,11 +247,6 @@ void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_a
     result.initial = {initial_soc_percent};
     result.soc_percent = left_percent;
     result.state = battery::BatteryState{left_percent, 0.0};
-}
-
-bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before) {
-    const double missing_v = state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
-    return reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty());
 }
 
 std::vector<LiveAlarm> find_alarms(const LiveState& state, const std::optional<PredictionInput>& input,

@@ -46,10 +46,6 @@ Prediction predict_airborne_start(const PredictionInput& input, const mechanical
 void estimate_soc_from_counter(const flight::Track& charge_ah, double capacity_ah, double initial_soc_percent,
                                LiveBattery& result);
 
-/// Returns whether the voltage is so far below the battery's model that an alarm `voltage` is raised, or stays: in the
-/// air, and as a caution on the ground, as a pack that lost charge may be flown again.
-bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before);
-
 /// Returns the alarms of a state, most severe first: silent link or power, probability of missing the reserve, voltage below the
 /// battery's model, power outside the model's 95 % interval. `before` are those of the last state: a grade ends at half
 /// of its threshold, so that an alarm near it does not come and go.

@@ -48,7 +48,9 @@ test("a page that is served works without a network, and a new version is new in
   await write("second");
   const before = await page.evaluate(() => caches.keys());
   await page.evaluate(async () => void (await (await navigator.serviceWorker.ready).update()));
-  await page.waitForFunction(async ([old]) => !(await caches.keys()).includes(old), before);
+  await page.evaluate(async ([old]) => {
+    for (let i = 0; i < 600 && (await caches.keys()).includes(old); ++i) await new Promise((later) => setTimeout(later, 50));
+  }, before);
   await context.setOffline(true);
   await page.reload();
   assert.equal(await page.title(), "second");
