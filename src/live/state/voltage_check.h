@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-/// The charge that the voltage shows, beside the charge counted.
+/// The charge by the voltage, and whether it contradicts the charge counted.
 namespace flightwatt::live {
 
 /// Time before the end of the data whose voltages are compared [s], and the samples that are needed in it.
