@@ -82,6 +82,7 @@ std::vector<std::size_t> find_other_vehicles(const std::vector<VehicleChange>& c
         }
     }
     std::vector<std::size_t> rising;
+    rising.reserve(places.size());
     for (const auto& [changed, place] : places) rising.push_back(place);
     return rising;
 }
