@@ -23,10 +23,17 @@ namespace {
 /// Surplus of a value with which a leg, or the way back, cannot be flown: as if the battery ended.
 constexpr double too_far_percent = -100.0;
 
+/// The end of a mission, without its curve.
+MissionSummary simulated_end(const Mission& mission) {
+    SimulationOptions steps;
+    steps.output_s = std::max(1.0, timeline_of(mission.setup.duration_s).duration_s);
+    return simulate(mission, steps).summary;
+}
+
 /// Simulated final state of charge minus the reserve [points]. Negative if the reserve is not kept, the more so the
 /// earlier the battery ends.
 double surplus_percent(const Mission& mission) {
-    const auto summary = simulate(mission).summary;
+    const auto summary = simulated_end(mission);
     const double reserve_percent = mission.setup.reserve_soc_percent;
     if (summary.feasible) return *summary.final_soc_percent - reserve_percent;
     return -reserve_percent - units::percentage(summary.duration_s - powered_end_s(summary), summary.duration_s) - 1e-9;
@@ -119,9 +126,9 @@ class LimitSearch {
             most.margin_percent = margin_percent_.at(value);
             most.sources = collect_uncertainty(at.setup).sources;
         }
-        most.final_soc_percent = simulate(at).summary.final_soc_percent.value_or(0.0);
+        most.final_soc_percent = simulated_end(at).final_soc_percent.value_or(0.0);
         most.residual_percent = most.final_soc_percent - most.margin_percent - at.setup.reserve_soc_percent;
-        const auto further = simulate(mission(beyond)).summary;
+        const auto further = simulated_end(mission(beyond));
         most.limited_by = further.undeliverable  ? LimitingFactor::power
                           : further.cut_off_at_s ? LimitingFactor::cut_off
                                                  : LimitingFactor::charge;
@@ -220,7 +227,7 @@ FeasibilityLimit largest_payload(const MissionVariant& mission, const std::optio
     const MissionVariation variation = [&](double payload_w) { return with_payload(bare, payload_w); };
     LimitSearch search(variation, probability);
     if (const double surplus = search.surplus(0.0).value(); surplus < 0.0) {
-        if (const auto summary = simulate(bare).summary; !summary.feasible)
+        if (const auto summary = simulated_end(bare); !summary.feasible)
             throw NoResultError("without any payload already: " + describe(summary));
         throw NoResultError(fmt::format("without any payload the mission misses its reserve by {:.4g} points already{}",
                                         -surplus, search.share_text()));

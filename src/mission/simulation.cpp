@@ -82,11 +82,21 @@ struct Supply {
     double cutoff_voltage_v = 0.0;
 };
 
+/// Over which power and the RC pair's voltage are smooth for Runge-Kutta: a sixtieth of a turn of the fastest harmonic,
+/// and a tenth of the time constant, but not below 0.1 s.
+double integration_step_s(const battery::Battery& battery, const LoadSegment& segment) {
+    constexpr double shortest_s = 0.1;
+    double smooth_s = quick_step_s(segment) / 5.0;
+    if (battery.thevenin) smooth_s = std::min(smooth_s, battery.thevenin->rc_time_constant_s / 10.0);
+    return std::max(smooth_s, shortest_s);
+}
+
 /// Follows the battery from `state` through one demand and adds its rows.
 battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment, const SimulationOptions& steps,
                                battery::Discharge state, SocCurve& curve) {
     const auto& battery = supply.battery;
-    const battery::DischargeOptions options{steps.integration_s, supply.cutoff_voltage_v};
+    const battery::DischargeOptions options{std::min(steps.integration_s, integration_step_s(battery, segment)),
+                                            supply.cutoff_voltage_v};
     SegmentPower power(segment);
     const auto load = [&](double time_s) { return power.at(time_s) + segment.compute_w; };
     const auto add = [&](double time_s, const battery::Discharge& now) {

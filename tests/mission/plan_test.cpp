@@ -132,7 +132,7 @@ TEST(Plan, MayBeMadeAnewInFlight) {
     const auto whole = plan_remaining(mission, planner, {0.0, 100.0, {}, 0.0}, 2.0);
     // Half way, with what the plan itself has left by then, the rest is as good.
     const auto flown = plan_mission(mission).mission;
-    const auto curve = simulate(flown, {300.0, 0.1}).curve;
+    const auto curve = simulate(flown, {300.0}).curve;
     const auto at =
         std::find_if(curve.rows.begin(), curve.rows.end(), [](const auto& row) { return row.time_s == 300.0; });
     ASSERT_NE(at, curve.rows.end());

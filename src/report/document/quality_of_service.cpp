@@ -78,7 +78,6 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     if (axes.size() < 2) return std::nullopt;
     QosMap map{axes[0], axes[1], {}};
     mission::SimulationOptions steps;
-    steps.integration_s = 1.0;  // power is constant or smooth: error below 0.01 %
     for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
     for (const auto& schedule : schedules_of(mission, map.x, map.y))
         map.soc_percent.push_back(simulate(mission, schedule, steps).summary.final_soc_percent.value_or(std::nan("")));
