@@ -1,7 +1,7 @@
 # The program for browsers. What they cannot do is left out: live links (watch, play), processes (profile, programs that draw figures), signals.
 string(CONCAT left_out "/src/base/signal_watch\\.cpp$"
   "|/src/compute/(profiler|power_sampler)\\.cpp$|/src/compute/(processes|profiling|sensors)/"
-  "|/src/live/(sources|state)/|/src/live/(announcer|followed_files|live_flight|live_schedule|page_server|playback)\\.cpp$"
+  "|/src/live/sources/|/src/live/state/(moment|soc_estimation|telemetry_store)\\.cpp$|/src/live/(announcer|followed_files|live_flight|live_schedule|page_server|playback)\\.cpp$"
   "|/src/live/(link_mission|predictor|received_links|recorder|sources)\\.cpp$|/src/cli/output/watch_output\\.cpp$"
   "|/src/report/figures/run_program\\.cpp$|/tools/flightwatt_(play|profile|watch)\\.cpp$")
 set(instead_of_left_out ${CMAKE_CURRENT_LIST_DIR}/left_out_stages.cpp ${CMAKE_CURRENT_LIST_DIR}/run_program.cpp)
