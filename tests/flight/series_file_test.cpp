@@ -150,6 +150,20 @@ TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
     EXPECT_TRUE(warnings_of(series).empty());
 }
 
+/// Its power was unknown, though what is said of other tables names these columns.
+TEST(SeriesFile, OfAnotherProgramWithoutPowerHasThatOfVoltageAndCurrent) {
+    const auto table = "time_s,voltage_v,current_a,altitude_m\n1,12,2,0\n2,,3,5\n3,11,4,10\n";
+    const auto series = parse_series_csv(table, "mine.csv");
+    EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 3));
+    EXPECT_THAT(power_track(series).value, ElementsAre(24, 44));
+    EXPECT_TRUE(power_track(parse_series_csv("# format = 1\n# flight = \"a\"\n# aircraft_id = \"\"\n"
+                                             "# aircraft_name = \"\"\n" +
+                                                 std::string(table),
+                                             "a.csv"))
+                    .empty())
+        << "a log whose power was not to be computed";
+}
+
 TEST(SeriesFile, RefusesNumbersWithWhichAFlightLastsForDays) {
     const auto refused = [](int rows, double interval_s) {
         std::string text = "time_s,power_w,air_temperature_c\n";

@@ -21,6 +21,24 @@
 namespace flightwatt::flight {
 namespace {
 
+/// Adds the power of a table of another program that has none: voltage times current, where both are known.
+void add_product(FlightSeries& series) {
+    auto& tracks = series.tracks;
+    const auto of = [&](const char* name) { return std::ranges::find(tracks, name, &Track::name); };
+    const auto volts = of("voltage_v");
+    const auto amps = of("current_a");
+    if (of("power_w") != tracks.end() || volts == tracks.end() || amps == tracks.end()) return;
+    Track power{.name = "power_w", .source = "voltage_v * current_a"};
+    std::size_t v = 0;
+    for (std::size_t i = 0; i < amps->time_s.size(); ++i) {
+        while (v < volts->time_s.size() && volts->time_s[v] < amps->time_s[i]) ++v;
+        if (v == volts->time_s.size() || volts->time_s[v] != amps->time_s[i]) continue;
+        power.time_s.push_back(amps->time_s[i]);
+        power.value.push_back(volts->value[v] * amps->value[i]);
+    }
+    if (!power.empty()) tracks.push_back(std::move(power));
+}
+
 /// Reads the table row by row.
 class TableReader {
   public:
@@ -56,6 +74,7 @@ class TableReader {
             std::size_t track = 0;
             std::erase_if(series.tracks, [&](const Track&) { return !is_bound_[track++]; });
         }
+        if (!matter_.present) std::ranges::for_each(recordings_, add_product);
         if (!matter_.present) refuse_slow_clock();
         if (recordings_.size() == 1 && !chosen_.empty()) require_chosen(recordings_.front());
         return std::move(recordings_);
