@@ -98,6 +98,7 @@ Findings product_difference(const PowerRecord& record) {
 Findings stuck_voltage(const PowerRecord& record) {
     constexpr double next_part = 0.2;
     constexpr double varied_part = 0.1;  // of the mean current
+    constexpr std::size_t enough = 10;   // samples: fewer are often equal by a coarse resolution
     if (record.is_sum_of_circuits || record.voltage_v.empty() || !record.has_current()) return {};
     const auto lasts_s = [&](const IndexSpan& run) { return record.time_s[run.end - 1] - record.time_s[run.begin]; };
     std::vector<IndexSpan> runs;
@@ -109,6 +110,7 @@ Findings stuck_voltage(const PowerRecord& record) {
     if (runs.size() < 2) return {};  // constant throughout
     std::ranges::stable_sort(runs, std::ranges::greater(), lasts_s);
     const auto& longest = runs.front();
+    if (longest.size() < enough) return {};
     const auto currents_a = part_of(record.current_a, longest);
     const std::vector<double> varied_a(currents_a.begin(), currents_a.end());
     const bool varies =

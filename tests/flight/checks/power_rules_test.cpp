@@ -220,6 +220,24 @@ TEST(PowerRules, OfAVoltageThatStandsStillFromAMomentOn) {
     EXPECT_THAT(stands(400, 0.0), testing::Not(is_told)) << "with the current, as in a glide";
 }
 
+/// In a flight that has just begun, or with a sample every 5 s, a voltage in steps of 0.1 V was called stuck.
+TEST(PowerRules, OfAVoltageThatIsEqualInAFewSamples) {
+    const auto stands = [](std::size_t count) {
+        auto record = sound_record();
+        record.in_flight = {{first, first + 2 * count}};
+        record.duration_s = 2.0 * static_cast<double>(count);
+        record.voltage_v.assign(record.time_s.size(), 12.0);
+        for (std::size_t i = first; i < last; ++i) {
+            record.voltage_v[i] = i < first + count ? 12.0 : 12.6 - 0.001 * static_cast<double>(i - first);
+            record.current_a[i] = 2.0 + 0.2 * static_cast<double>(i % 3);
+        }
+        return found_in(std::move(record)).warnings;
+    };
+    const auto is_told = Contains(HasSubstr("the voltage stays at 12 V"));
+    EXPECT_THAT(stands(9), testing::Not(is_told));
+    EXPECT_THAT(stands(12), is_told);
+}
+
 TEST(PowerRules, OfPowerOutsideOfTheFlight) {
     const auto outside = [](std::size_t count, double power_w = 22.0) {
         auto record = sound_record();
