@@ -264,7 +264,8 @@ void LiveFlight::Impl::update_battery(const flight::FlightData& data, LiveState&
         estimate_soc_from_counter(data.charge_ah, input_->battery->capacity_ah, *input_->initial_soc_percent,
                                   *state.battery);
     // Without the alarm's delay, as predict has none.
-    if (state.battery->voltage_residual_v.value_or(0.0) <= -failing_cell_v) use_voltage_if_lower(*state.battery);
+    const double missing_v = -state.battery->voltage_residual_v.value_or(0.0);
+    if (missing_v >= contradicting_v(state.battery->voltage_explained_v)) use_voltage_if_lower(*state.battery);
 }
 
 /// Why there can be no prediction now; empty: there can.

@@ -29,6 +29,7 @@ struct LiveBattery {
     InitialCharge initial;                            ///< or the current one, where only the voltage shows it
     std::optional<double> drawn_ah;                   ///< charge drawn since the first retained message
     std::optional<double> voltage_residual_v;         ///< measured less the model's, median of the last minute
+    double voltage_explained_v = 0.0;                 ///< of it by a resistance as in 95 of 100 flights
     std::optional<double> time_to_reserve_s;          ///< time until the reserve is reached in a continued cruise
     std::optional<double> probability_below_reserve;  ///< probability of landing below the reserve, 0 to 1
     std::optional<battery::BatteryState> state;       ///< state for forecasts

@@ -270,8 +270,8 @@ BatteryPrediction predict_battery(const PredictionInput& input, const flight::Fl
     const auto initial = initial_charge(input, record);
     BatteryNow now{state_after(*input.battery, record, initial.soc_percent), record.charge_ah.back(), initial};
     const auto by_voltage = check_voltage(*input.battery, record, initial.soc_percent);
-    const bool is_lower =
-        by_voltage && by_voltage->residual_v <= -failing_cell_v && by_voltage->soc_percent < now.state.soc_percent;
+    const bool is_lower = by_voltage && by_voltage->residual_v <= -contradicting_v(by_voltage->explained_v) &&
+                          by_voltage->soc_percent < now.state.soc_percent;
     if (is_lower) {
         remarks.warnings.push_back(voltage_warning(now.state.soc_percent, by_voltage->soc_percent));
         now = {

@@ -134,8 +134,10 @@ void add_reserve_alarm_without_prediction(const LiveState& state, double reserve
 /// Whether the voltage is so far below the battery's model that an alarm is raised, or stays: in the air, and as a caution
 /// on the ground, as a pack that lost charge may be flown again.
 bool contradicts_charge(const LiveState& state, const std::vector<LiveAlarm>& before) {
-    const double missing_v = state.battery ? -state.battery->voltage_residual_v.value_or(0.0) : 0.0;
-    return reaches(missing_v, failing_cell_v, !grade_of(before, "voltage").empty());
+    if (!state.battery) return false;
+    const double missing_v = -state.battery->voltage_residual_v.value_or(0.0);
+    return reaches(missing_v, contradicting_v(state.battery->voltage_explained_v),
+                   !grade_of(before, "voltage").empty());
 }
 
 }  // namespace

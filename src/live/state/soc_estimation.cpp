@@ -90,6 +90,7 @@ LiveBattery estimate_soc(const PredictionInput& input, const std::optional<Initi
         result.soc_percent = result.state->soc_percent;
         if (const auto by_voltage = check_voltage(battery, *record, result.initial.soc_percent)) {
             result.voltage_residual_v = by_voltage->residual_v;
+            result.voltage_explained_v = by_voltage->explained_v;
             result.soc_by_voltage_percent = by_voltage->soc_percent;
             result.soc_by_voltage_sd_percent = by_voltage->sd_percent;
         }

@@ -2,6 +2,7 @@
 
 #include "battery/discharge_record.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -16,9 +17,14 @@ inline constexpr std::size_t enough_samples = 5;
 /// The voltage below the battery's model [V] that contradicts the charge drawn: a cell at 3.7 V would be at 3.4 V.
 inline constexpr double failing_cell_v = 0.3;
 
+/// Returns how far the voltage is below the battery's model where it contradicts the charge [V]: more than another
+/// resistance explains.
+inline double contradicting_v(double explained_v) { return std::max(failing_cell_v, explained_v); }
+
 /// What the voltage of the last minute shows.
 struct VoltageCheck {
     double residual_v = 0.0;   ///< measured less the battery's model, median
+    double explained_v = 0.0;  ///< with the median current, what the resistance of 95 in 100 flights differs by
     double soc_percent = 0.0;  ///< state of charge by the voltage
     double sd_percent = 0.0;   ///< its standard deviation [points]
 };

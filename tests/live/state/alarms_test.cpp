@@ -77,6 +77,16 @@ TEST(AlarmsOf, AVoltageThatIsTooLowIsACautionOnTheGround) {
     EXPECT_THAT(find_alarms(state, input(), {}), testing::IsEmpty()) << "half of the threshold";
 }
 
+/// A pack that is colder or older than the mean of its flights was called a failing cell.
+TEST(AlarmsOf, AVoltageThatAnotherResistanceExplainsIsNone) {
+    auto state = flying(0.0);
+    state.battery->voltage_residual_v = -0.4;
+    state.battery->voltage_explained_v = 0.45;
+    EXPECT_THAT(find_alarms(state, input(), {}), testing::IsEmpty());
+    state.battery->voltage_residual_v = -0.5;
+    EXPECT_EQ(find_alarms(state, input(), {}).size(), 1U);
+}
+
 TEST(AlarmsOf, AProbabilityThatVariesAroundAThresholdRaisesOneAlarm) {
     std::vector<LiveAlarm> alarms;
     int changes = 0;
