@@ -71,6 +71,16 @@ test("definitions go with their log, also where another log has its name", async
   assert.deepEqual(written, ["logs/a.data", "logs/a.log", "logs/a.data", "logs/2/a.data", "logs/2/a.log"]);
 });
 
+test("a log that grew takes its place, though what was dropped cannot be read any more", async () => {
+  const { project, written } = projectOf();
+  const drop = (file) => project.add([{ path: "a.tlog", file }]);
+  const dropped = new File(["one"], "a.tlog", { lastModified: 1 });
+  await drop(dropped);
+  dropped.slice = () => ({ arrayBuffer: () => Promise.reject(new DOMException("changed", "NotReadableError")) });
+  await drop(new File(["one and more"], "a.tlog", { lastModified: 2 }));
+  assert.deepEqual(written, ["logs/a.tlog", "logs/a.tlog"]);
+});
+
 test("logs that come with a mission are read, and what the mission names stays beside it", async () => {
   const { project, written } = projectOf();
   const files_of = (...names) => names.map((name) => ({ path: `my/${name}`, file: new File(['mechanical = "model.toml"'], name) }));

@@ -54,11 +54,11 @@ export async function isReadable(file: Blob | undefined): Promise<boolean> {
 export async function placeOfLog(
   path: string,
   file: Blob,
-  known: (path: string) => Blob | undefined,
+  known: (path: string) => Blob | undefined | Promise<Blob | undefined>,
 ): Promise<{ place: string; is_new: boolean }> {
   for (let n = 1; ; n += 1) {
     const place = numbered(path, n);
-    const old = known(place);
+    const old = await known(place);
     if (!old) return { place, is_new: true };
     if (await beginsWith(old, file)) return { place, is_new: false };
     if (await beginsWith(file, old)) return { place, is_new: true };

@@ -209,10 +209,14 @@ export class Project {
     const folders: Partial<Record<Kind | "mission", string>> = { mission: missions_folder, plan: plans_folder };
     const folder = folders[kind] ?? logs_folder;
     if (kind === "log" && !this.isSame(`${folder}/${safe}`, file)) {
-      const known = (one: string) => this.files.get(`${folder}/${one}`) ?? elsewhere.get(`${folder}/${one}`);
+      // A log that grew is no longer readable as it was dropped: its copy in this browser is.
+      const known = async (one: string) => {
+        const old = this.files.get(`${folder}/${one}`);
+        return (await isReadable(old)) ? old : elsewhere.get(`${folder}/${one}`);
+      };
       const { place, is_new } = await placeOfLog(safe, file, known);
       placed.set(stemOf(safe), place.slice(0, -safe.length));
-      return { place: `${folder}/${place}`, is_new: is_new || !this.files.has(`${folder}/${place}`) };
+      return { place: `${folder}/${place}`, is_new: is_new || !(await isReadable(this.files.get(`${folder}/${place}`))) };
     }
     const beside = kind === "definitions" ? placed.get(stemOf(safe)) ?? "" : "";
     const place = kind === "terrain" ? `${terrain_folder}/${tileName(safe)}` : `${folder}/${beside}${safe}`;
