@@ -74,6 +74,8 @@ std::string unit_in_name(std::string_view name) {
     std::string text(name);
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (const auto per = text.find("_per_"); per != std::string::npos) text.replace(per, 5, "/");
+    for (const auto* speed : {"_m_s", "_cm_s", "_km_h"})
+        if (text.ends_with(speed)) text[text.size() - 2] = '/';
     const auto at = text.rfind('_');
     const auto unit = at == std::string::npos ? std::string() : text.substr(at + 1);
     return std::ranges::find(units, unit) == units.end() ? std::string() : unit;
@@ -83,7 +85,8 @@ std::string unit_in_name(std::string_view name) {
 std::string meant_text(std::string_view word, const std::string& near) {
     const auto unit = unit_in_name(word);
     const auto meant = unit_in_name(near);
-    const bool is_other = !unit.empty() && !meant.empty() && unit != meant;
+    const bool is_speed = unit == "ms" && meant == "m/s";  // so written, too
+    const bool is_other = !unit.empty() && !meant.empty() && unit != meant && !is_speed;
     return fmt::format("did you mean '{}'?", near) +
            (is_other ? fmt::format(" its values are in {}, not in {}: convert them", meant, unit) : "");
 }

@@ -126,6 +126,9 @@ TEST(NearestWord, FindsMisspellingsAndNothingElse) {
 TEST(NearestWord, IsTheHintWhereThereIsOne) {
     EXPECT_EQ(meant_or("landng", {"takeoff", "landing"}, "see --help"), "did you mean 'landing'?");
     EXPECT_EQ(meant_or("elephant", {"takeoff", "landing"}, "see --help"), "see --help");
+    EXPECT_EQ(meant_or("airspeed_m_s", {"airspeed_m_per_s"}, ""), "did you mean 'airspeed_m_per_s'?") << "m/s, too";
+    EXPECT_EQ(meant_or("ground_speed_ms", {"ground_speed_m_per_s"}, ""), "did you mean 'ground_speed_m_per_s'?");
+    EXPECT_EQ(meant_or("airspeed_km_h", {"airspeed_m_per_s"}, "none"), "none");
 }
 
 const auto numbers = parse_toml("minus = -1\nzero = 0\nhalf = 0.5\nthree = 3\nhuge = 1e300\n", "m.toml");
