@@ -90,7 +90,7 @@ class PathFlight {
     void fly_shape(const Hold& hold) {
         const double rate = element_->climb_rate_m_per_s.value_or(height_m() / hold.time_s);
         const double climb_s = height_m() > 0.0 ? height_m() / rate : 0.0;
-        require_slower_than_airspeed(height_m() > 0.0 ? rate : 0.0);
+        if (height_m() > 0.0 && !hold.hovers) require_slower_than_airspeed(rate);
         if (climb_s * nearly > hold.time_s) {
             refuse(fmt::format("takes {:.4g} s, and at {:.4g} m/s {} m of height need {:.4g} s", hold.time_s, rate,
                                height_m(), climb_s),

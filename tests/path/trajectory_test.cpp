@@ -272,6 +272,21 @@ TEST(Trajectory, HoversWithTheSpeedOfTheWind) {
     EXPECT_EQ(compute_trajectory({{element_of(Hold{100.0})}}, {}).pieces.front().motion.airspeed_m_per_s, 13.0);
 }
 
+/// A plan at 2 m/s around a building was refused, as its height changes at 3 m/s above one place.
+TEST(Trajectory, ChangesTheHeightInHoverFasterThanTheAirspeedOfItsWays) {
+    Hold hover{10.0};
+    hover.hovers = true;
+    const auto up = compute_trajectory({{climbing(element_of(hover), 200.0)}}, {});
+    ASSERT_EQ(up.pieces.size(), 1U);
+    EXPECT_DOUBLE_EQ(up.pieces[0].motion.climb_m_per_s, 20.0);
+    EXPECT_DOUBLE_EQ(up.pieces[0].time_s, 10.0);
+    EXPECT_NE(test::rejected([] {
+                  compute_trajectory({{climbing(element_of(Hold{10.0}), 200.0)}}, {});
+              }).find("changes its height at 20 m/s with an airspeed of 13 m/s"),
+              std::string::npos)
+        << "a wing";
+}
+
 TEST(Trajectory, RefusesWhatCannotBeFlown) {
     const auto refusal = [](const PathElement& element, const Wind& wind = {}) {
         return test::rejected([&] { compute_trajectory({{element}}, wind); });
