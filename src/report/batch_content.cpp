@@ -60,6 +60,41 @@ void add(std::optional<double>& sum, const std::optional<double>& more) {
     if (sum) *sum += *more;
 }
 
+/// Leaves out what a VTOL only hovers, as the batch does: of each aircraft on its own.
+void leave_out_hover(const std::set<std::string>& keep, BatchContent& content) {
+    if (std::ranges::none_of(content.measured, &mechanical::MeasuredFlight::only_hovers)) return;
+    const auto is_measured = [&](const ReportFlight& flight) {
+        return std::ranges::any_of(content.measured, [&](const auto& measured) {
+            return mechanical::is_sortie_of(measured.samples.flight, flight.name);
+        });
+    };
+    std::vector<ReportFlight*> flown;
+    std::vector<batch::FlightAircraft> aircraft;
+    for (auto& flight : content.flights) {
+        if (!is_measured(flight)) continue;
+        flown.push_back(&flight);
+        aircraft.push_back(flight.aircraft);
+    }
+    for (const auto& group : batch::group_aircraft(aircraft)) {
+        std::vector<mechanical::MeasuredFlight> sorties;  // without samples
+        for (const auto number : group.flights)
+            for (const auto& measured : content.measured) {
+                if (!mechanical::is_sortie_of(measured.samples.flight, flown[number]->name)) continue;
+                auto& sortie = sorties.emplace_back();
+                sortie.samples.flight = measured.samples.flight;
+                sortie.only_hovers = measured.only_hovers;
+            }
+        for (const auto& exclusion : mechanical::exclude_hover(sorties, keep)) {
+            std::erase_if(content.measured,
+                          [&](const auto& measured) { return measured.samples.flight == exclusion.flight; });
+            auto& flight = **std::ranges::find_if(
+                flown, [&](const auto* of) { return mechanical::is_sortie_of(exclusion.flight, of->name); });
+            flight.exclusions.push_back(to_string(exclusion));
+            flight.is_fitted = is_measured(flight);
+        }
+    }
+}
+
 }  // namespace
 
 std::string_view fitted_part(const ReportFlight& flight) {
@@ -98,14 +133,7 @@ BatchContent read_batch_content(const std::filesystem::path& out) {
         }
         content.flights.push_back(std::move(flight));
     }
-    for (const auto& exclusion : exclude_hover(content.measured, fit.keep)) {
-        const auto flight = std::ranges::find_if(
-            content.flights, [&](const auto& of) { return mechanical::is_sortie_of(exclusion.flight, of.name); });
-        flight->exclusions.push_back(to_string(exclusion));
-        flight->is_fitted = std::ranges::any_of(content.measured, [&](const auto& measured) {
-            return mechanical::is_sortie_of(measured.samples.flight, flight->name);
-        });
-    }
+    leave_out_hover(fit.keep, content);
     std::ranges::stable_sort(content.flights, {}, [](const auto& flight) { return !flight.unusable_power.empty(); });
     for_each_in_parallel(content.flights.size(), [&](std::size_t i) {
         auto& flight = content.flights[i];

@@ -46,11 +46,11 @@ TEST(BatchContent, HasNoFitWhereTheBatchCouldNotFit) {
 }
 
 /// The log of a VTOL that is on its wing (w) or hovers (h), a sortie after the other.
-std::string vtol_log(const std::string& name, const std::string& sorties) {
+std::string vtol_log(const std::string& name, const std::string& sorties, int aircraft_id = 7) {
     auto text = fmt::format(
-        "# format = 1\n# flight = \"{}\"\n# aircraft_id = \"7\"\n# aircraft_name = \"VTOL\"\n"
+        "# format = 1\n# flight = \"{}\"\n# aircraft_id = \"{}\"\n# aircraft_name = \"VTOL\"\n"
         "# firmware = \"fixedwing\"\ntime_s,power_w,voltage_v,current_a,altitude_m,throttle_percent,vtol_state\n",
-        name);
+        name, aircraft_id);
     int time_s = 0;
     for (const char flown : sorties) {
         for (int i = 0; i < 300; ++i, ++time_s) {
@@ -78,6 +78,18 @@ TEST(BatchContent, OnlyTheHoverOfAVtolIsNotFitted) {
         EXPECT_EQ(flight.unusable_power, "") << "the battery is that of all";
         EXPECT_EQ(flight.exclusions.size(), 1U) << flight.name;
     }
+}
+
+/// The page said of a hover that the fit took that other flights of its aircraft are on the wing.
+TEST(BatchContent, TheHoverOfAnotherVtolIsFitted) {
+    const auto folder = test::scratch_dir();
+    write_file_atomically(folder / "wing.csv", vtol_log("wing", "w"));
+    write_file_atomically(folder / "hover.csv", vtol_log("hover", "h", 8));
+    const auto run = test::run_shell("flightwatt batch wing.csv hover.csv --mix-aircraft -o out", folder);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const auto content = read_batch_content(folder / "out");
+    EXPECT_EQ(content.measured.size(), 2U);
+    for (const auto& flight : content.flights) EXPECT_EQ(fitted_part(flight), "all") << flight.name;
 }
 
 TEST(FittedPart, FollowsExclusionsAndThePowerRecord) {
