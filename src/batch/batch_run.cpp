@@ -235,7 +235,7 @@ std::vector<const BatchFlight*> candidates_among(const BatchFlights& flights) {
 }
 
 bool is_used(const BatchFlight& flight, const RecordedPhase& phase) {
-    const auto name = mechanical::sortie_name(flight.record.flight, phase.sortie);
+    const auto name = mechanical::sortie_name(valid_utf8(flight.record.flight), phase.sortie);
     return std::ranges::any_of(flight.selection.flights, [&](const SelectedSortie& sortie) {
         return sortie.flight == name && sortie.phases[phase.phase];
     });
@@ -431,15 +431,13 @@ std::vector<mechanical::Exclusion> exclude_hover(BatchFlights& flights, const st
         for (auto& flight : flights) {
             if (!is_of_group(flight) || keep.contains(flight.record.flight)) continue;
             std::erase_if(flight.selection.flights, [&](const auto& sortie) {
-                if (sortie.only_hovers) excluded.push_back({sortie.flight, std::nullopt, mechanical::hover_reason()});
-                return sortie.only_hovers;
+                if (!sortie.only_hovers) return false;
+                excluded.push_back({sortie.flight, std::nullopt, mechanical::hover_reason()});
+                flight.selection.exclusions.push_back(excluded.back());
+                return true;
             });
         }
     }
-    for (const auto& exclusion : excluded)
-        for (auto& flight : flights)
-            if (mechanical::is_sortie_of(exclusion.flight, flight.record.flight))
-                flight.selection.exclusions.push_back(exclusion);
     return excluded;
 }
 

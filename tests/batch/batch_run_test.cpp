@@ -418,7 +418,10 @@ TEST(Batch, ReportsNamesThatAreNotUtf8TheSameWayTwice) {
     const auto folder = test::scratch_dir();
     copy_sample(1, folder / "in", "good\xFF");
     write_text(folder / "in" / "bad\xFF.data", "rubbish\n");
-    EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), ElementsAre("bad\xFF", "good\xFF"));
+    const auto flights = batch(folder / "in", folder / "out");
+    EXPECT_THAT(done_anew(flights), ElementsAre("bad\xFF", "good\xFF"));
+    const auto catalogue = test::text_of(catalogue_csv(flights));
+    EXPECT_EQ(catalogue.find(",true,false,"), std::string::npos) << "complete phases are used\n" << catalogue;
     const auto first = contents(folder / "out");
     EXPECT_THAT(done_anew(batch(folder / "in", folder / "out")), IsEmpty());
     EXPECT_EQ(contents(folder / "out"), first);
