@@ -314,12 +314,37 @@ void require_schedule(const TomlTable& root, bool lacks_schedule) {
 
 MissionVariant scheduled_mission(const TomlTable& root, const MissionReadOptions& reading, MissionSetup mission);
 
+/// Reads the cruise; of lines that are to be chosen, those of the first heading and airspeed that can be flown.
+void read_flyable_cruise(const TomlTable& root, const MissionReadOptions& reading, MissionSetup& mission) {
+    const auto before = mission;
+    try {
+        return read_cruise_path(root, reading, mission);
+    } catch (const InputError&) {
+        const auto choices = reading.survey ? std::nullopt : read_survey_choices(root);
+        if (!choices) throw;
+        auto chosen = reading;
+        for (const double heading_deg : choices->headings_deg) {
+            for (const auto& level : choices->levels) {
+                if (level.spacing_m != choices->levels.front().spacing_m) continue;
+                chosen.survey = {heading_deg, {level}};
+                mission = before;
+                try {
+                    return read_cruise_path(root, chosen, mission);
+                } catch (const InputError&) {
+                    continue;
+                }
+            }
+        }
+        throw;
+    }
+}
+
 /// A mission without what was noted as its path was read: other lines have notes of their own.
 MissionSetup without_notes_of_path(const TomlTable& root, const MissionReadOptions& reading, MissionSetup setup) {
     auto read = setup;
     read.notes.clear();
     read.uncertain.clear();
-    read_cruise_path(root, reading, read);
+    read_flyable_cruise(root, reading, read);
     const auto erase = [](std::vector<std::string>& texts, const std::vector<std::string>& of_path) {
         std::erase_if(texts, [&](const auto& text) { return std::ranges::find(of_path, text) != of_path.end(); });
     };
@@ -409,7 +434,7 @@ MissionSetup setup_from(const TomlTable& root, const std::filesystem::path& path
     apply_payload(root, mission);
     if (!root.has("path")) apply_airspeed(root, mission);
     read_durations(root, mission);
-    read_cruise_path(root, reading, mission);
+    read_flyable_cruise(root, reading, mission);
     if (mission.packs && mission.survey && mission.survey->has_zones)
         mission.notes.emplace_back(
             "packs: the ways home and back to the lines are straight, also over zones that are not to be flown over: check "

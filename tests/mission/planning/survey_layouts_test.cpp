@@ -10,6 +10,7 @@
 #include <array>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace flightwatt::mission {
@@ -157,22 +158,26 @@ TEST(SurveyPlan, HasTheNotesOfItsLinesAndNotOfThoseThatWereReadFirst) {
 }
 
 TEST(SurveyPlan, NamesTheWaysThatCannotBeFlown) {
-    const auto text = R"(mechanical = "fits/mechanical/synthetic-wing.toml"
+    for (const auto* speeds : {"13, 5", "5, 13"}) {
+        const auto text = fmt::format(R"(mechanical = "fits/mechanical/synthetic-wing.toml"
 battery = "fits/battery/synthetic-3s.toml"
 [path]
 area = "missions/synthetic/field.geojson"
-airspeed_m_per_s = { levels = [13, 5] }
+airspeed_m_per_s = {{ levels = [{}] }}
 spacing_m = 60
 heading_deg = 30
 swath_m = 60
-utility = { weight = 1 }
-)";
-    const auto read = parse_mission(text, test::source_dir() / "field.toml", {.allow_unplanned = true});
-    const auto plan = plan_mission(std::get<PlanningProblem>(read));
-    ASSERT_FALSE(plan.mission.setup.notes.empty());
-    const auto& note = plan.mission.setup.notes.back();
-    EXPECT_EQ(note.find("1 of 2 ways to cover the area cannot be flown, for example: "), 0U) << note;
-    EXPECT_NE(note.find("5 m/s is beyond what the model's flights flew"), std::string::npos) << note;
+utility = {{ weight = 1 }}
+)",
+                                      speeds);
+        const auto read = parse_mission(text, test::source_dir() / "field.toml", {.allow_unplanned = true});
+        const auto plan = plan_mission(std::get<PlanningProblem>(read));
+        EXPECT_EQ(plan.mission.setup.survey->layout.strips.front().airspeed_m_per_s, 13.0) << speeds;
+        ASSERT_FALSE(plan.mission.setup.notes.empty());
+        const auto& note = plan.mission.setup.notes.back();
+        EXPECT_EQ(note.find("1 of 2 ways to cover the area cannot be flown, for example: "), 0U) << note;
+        EXPECT_NE(note.find("5 m/s is beyond what the model's flights flew"), std::string::npos) << note;
+    }
 }
 
 TEST(SurveyPlan, IsInfeasibleIfNoLinesLand) {
