@@ -6,6 +6,7 @@
 #include "battery/battery_toml.h"
 #include "compute/profile_reader.h"
 #include "mechanical/speed_to_fly.h"
+#include "mission/file/airspeed_toml.h"
 #include "mission/file/cruise_toml.h"
 #include "mission/file/named_file.h"
 #include "mission/file/payload_toml.h"

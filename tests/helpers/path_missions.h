@@ -1,8 +1,10 @@
 #pragma once
 
 #include "helpers/made_up_paths.h"
+#include "helpers/rejected.h"
 #include "helpers/steady_mission.h"
 
+#include <filesystem>
 #include <utility>
 
 namespace flightwatt::test {
@@ -18,6 +20,22 @@ inline mission::Mission path_mission(path::FlightPath path, const path::Wind& wi
     mission.setup.duration_is_stated[flight::Phase::cruise] = true;
     mission.schedule = {{flight::Phase::cruise, 0.0, cruise_s, {}}};
     return mission;
+}
+
+/// Writes a model with the made-up wing's power by motion.
+inline void write_wing(mechanical::MechanicalModel model, const std::filesystem::path& file) {
+    model.physical = made_up_wing();
+    model.physical->mean_airspeed_m_per_s = 0.0;  // unknown: its power is that of the terms alone
+    model.physical->bins = 100;
+    model.physical->bin_s = 30.0;
+    model.physical->correlation_s = 60.0;
+    write_text(file, mechanical::to_toml(model));
+}
+
+/// Returns the mean power [W] of a mission's cruise by its curve.
+inline double cruise_w(const mission::Mission& mission) {
+    const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
+    return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
 }
 
 }  // namespace flightwatt::test

@@ -8,10 +8,6 @@
 
 namespace flightwatt::mission {
 
-/// Sets the mean power of the cruise to that of the mission's airspeed_m_per_s by the physical model, if it is stated.
-/// Throws InputError for a model without a physical part, and for an airspeed far beyond the range of its flights.
-void apply_airspeed(const TomlTable& mission_table, MissionSetup& mission);
-
 /// Reads the values of [path] that a plan chooses, without `mission_with`; std::nullopt if all are fixed. Throws
 /// InputError for too many combinations.
 std::optional<SurveyChoices> read_survey_choices(const TomlTable& mission_table);

@@ -13,6 +13,7 @@ namespace flightwatt::mission {
 namespace {
 
 using mechanical::PowerTerm;
+using test::cruise_w;
 using testing::HasSubstr;
 
 /// A model of two flights at 200 W; its physical part has these terms, of 100 W each at 1 m/s, but climb.
@@ -43,11 +44,6 @@ Mission mission_on(const mechanical::MechanicalModel& model, const std::string& 
     return std::get<Mission>(parse_mission(
         "mechanical = \"model.toml\"\nbattery = { voltage_v = 23, resistance_ohm = 0, capacity_ah = 50 }\n" + lines,
         folder / "m.toml"));
-}
-
-double cruise_w(const Mission& mission) {
-    const auto& cruise = mission.setup.mechanical->phases[flight::Phase::cruise];
-    return energy_j(cruise.fourier, cruise.duration_s) / cruise.duration_s;
 }
 
 TEST(PayloadToml, OfARotorcraftWithoutTermsIsThatOfMassToThePowerOfOneAndAHalf) {
