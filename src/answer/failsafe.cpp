@@ -163,7 +163,7 @@ std::string shortfall(const Fleet& fleet, bool is_return, double keep_percent, c
     const double share = fleet.share_of(
         [&](std::size_t i) { return needed_percent(fleet.draws[i], is_return, keep_percent) > full_percent; });
     constexpr double nearly_all = 0.995;
-    if (share > nearly_all) return text;
+    if (share >= nearly_all) return text;
     return fmt::format("in {:.2g} of 100 flights, drawn as uncertain as power and pack are known, {}",
                        units::percent_per_whole * share, text);
 }
