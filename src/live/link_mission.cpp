@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,12 +41,14 @@ bool LinkMission::receive(const IncomingMessage& message) {
     } else if (name == "GLOBAL_POSITION_INT" && is_disarmed_ && (of("lat") != 0.0 || of("lon") != 0.0)) {
         parked_ = {of("lat") / units_per_degree, of("lon") / units_per_degree, of("alt") * metre_per_unit};
     } else if (name == "MISSION_COUNT" && of("count") <= max_items && !(of("mission_type") > 0.0)) {
+        forget_items();  // those of another mission
         count_ = static_cast<std::size_t>(of("count"));
-        items_.clear();  // those of another mission
+        is_answer_ = is_to_us(packet->of);
     } else if (name == "MISSION_ACK" && of("type") == 0.0 && !(of("mission_type") > 0.0)) {
         is_outdated_ = !whole_.empty();
-        count_.reset();
-        items_.clear();
+        forget_items();
+    } else if (name == "MISSION_ACK" && is_answer_ && is_to_us(packet->of)) {
+        forget_items();  // the aircraft has given up
     } else if ((name == "MISSION_ITEM_INT" || name == "MISSION_ITEM") && of("seq") < max_items &&
                !(of("mission_type") > 0.0)) {
         const bool has_place = of("x") != no_place && of("y") != no_place;
@@ -67,21 +70,55 @@ bool LinkMission::receive(const IncomingMessage& message) {
     return true;
 }
 
+bool LinkMission::is_to_us(const std::map<std::string, double, std::less<>>& packet) const {
+    return packet.at("target_system") == own_system_ && packet.at("target_component") == own_component_;
+}
+
+void LinkMission::forget_items() {
+    count_.reset();
+    items_.clear();
+    is_answer_ = false;
+    asked_.reset();
+    seen_items_.reset();
+}
+
+/// Whether items that a ground station asks for have come in the last seconds.
+bool LinkMission::is_reading_of_others(double now_s) {
+    constexpr double pause_s = 3.0;
+    if (!count_ || *count_ == 0) return false;
+    if (seen_items_ != items_.size()) asked_s_ = now_s;
+    seen_items_ = items_.size();
+    return now_s < asked_s_ + pause_s;
+}
+
 std::vector<std::string> LinkMission::requests(double now_s) {
     constexpr double autopilot = 1.0;
-    constexpr std::size_t at_once = 20;
-    if (system_ == 0.0 || is_whole() || now_s < asked_s_ + 1.0) return {};
-    asked_s_ = now_s;
-    const telemetry::MavlinkSender::Values target{{"target_system", system_}, {"target_component", autopilot}};
-    if (!count_ || *count_ == 0) return {sender_.packet("MISSION_REQUEST_LIST", target)};
-    std::vector<std::string> packets;
-    for (std::size_t item = 0; item < *count_ && packets.size() < at_once; ++item) {
-        if (items_.contains(item)) continue;
-        auto values = target;
-        values["seq"] = static_cast<double>(item);
-        packets.push_back(sender_.packet("MISSION_REQUEST_INT", values));
+    constexpr double again_s = 1.0;
+    constexpr double again_if_none_s = 10.0;
+    constexpr int max_times = 5;
+    if (system_ == 0.0) return {};
+    telemetry::MavlinkSender::Values target{{"target_system", system_}, {"target_component", autopilot}};
+    const bool has_all = count_ && items_.size() == *count_;
+    if (has_all && std::exchange(is_answer_, false)) return {sender_.packet("MISSION_ACK", target)};
+    if (is_whole() || (!is_answer_ && is_reading_of_others(now_s))) return {};
+    if (is_answer_) {
+        std::size_t next = 0;
+        while (items_.contains(next)) ++next;
+        if (asked_ != next)
+            asked_times_ = 0;
+        else if (now_s < asked_s_ + again_s)
+            return {};
+        if (asked_times_++ < max_times) {
+            asked_ = next;
+            asked_s_ = now_s;
+            target["seq"] = static_cast<double>(next);
+            return {sender_.packet("MISSION_REQUEST_INT", target)};
+        }
+        forget_items();
     }
-    return packets;
+    if (now_s < asked_s_ + (count_ && *count_ == 0 ? again_if_none_s : again_s)) return {};
+    asked_s_ = now_s;
+    return {sender_.packet("MISSION_REQUEST_LIST", target)};
 }
 
 /// Nearer is the same home: it is stated again with each position of a receiver.

@@ -52,11 +52,14 @@ TEST(LinkMission, AsksForWhatIsMissingUntilItIsWhole) {
     mission.receive(message_of(vehicle.heartbeat()));
     EXPECT_THAT(asked(mission, 0.0), ElementsAre("MISSION_REQUEST_LIST"));
     EXPECT_FALSE(mission.receive(message_of(count_of(vehicle, 3))));
-    EXPECT_THAT(asked(mission, 0.5), IsEmpty()) << "at most once a second";
-    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 1, 47.01, 50.0F))));
-    EXPECT_THAT(asked(mission, 1.0), ElementsAre("MISSION_REQUEST_INT0", "MISSION_REQUEST_INT2"));
+    EXPECT_THAT(asked(mission, 0.5), ElementsAre("MISSION_REQUEST_INT0"));
+    EXPECT_THAT(asked(mission, 1.0), IsEmpty()) << "again at most once a second";
     EXPECT_FALSE(mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F))));
+    EXPECT_THAT(asked(mission, 1.1), ElementsAre("MISSION_REQUEST_INT1"));
+    EXPECT_FALSE(mission.receive(message_of(item(vehicle, 1, 47.01, 50.0F))));
+    EXPECT_THAT(asked(mission, 1.2), ElementsAre("MISSION_REQUEST_INT2"));
     EXPECT_TRUE(mission.receive(message_of(item(vehicle, 2, 47.02, 60.0F))));
+    EXPECT_THAT(asked(mission, 1.3), ElementsAre("MISSION_ACK")) << "else PX4 reports a timeout";
     EXPECT_FALSE(mission.receive(message_of(item(vehicle, 2, 47.02, 60.0F)))) << "the same once more is not new";
     EXPECT_THAT(asked(mission, 2.0), IsEmpty());
     EXPECT_EQ(mission.waypoints(),
@@ -65,6 +68,46 @@ TEST(LinkMission, AsksForWhatIsMissingUntilItIsWhole) {
               "1\t0\t3\t16\t0\t0\t0\t0\t47.01\t8\t50\t1\n"
               "2\t0\t3\t16\t0\t0\t0\t0\t47.02\t8\t60\t1\n")
         << "ArduPilot's first item is home";
+}
+
+/// PX4 gives up where an item is asked for that is not the next one: the mission was never read once a packet was lost.
+TEST(LinkMission, AsksForALostItemAgainAndThenForTheWholeMission) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat(2, 12)));
+    EXPECT_THAT(asked(mission, 0.0), ElementsAre("MISSION_REQUEST_LIST"));
+    mission.receive(message_of(count_of(vehicle, 2)));
+    EXPECT_THAT(asked(mission, 0.1), ElementsAre("MISSION_REQUEST_INT0"));
+    mission.receive(message_of(item(vehicle, 0, 47.0, 50.0F)));
+    for (int i = 0; i < 5; ++i) EXPECT_THAT(asked(mission, 1.0 + i), ElementsAre("MISSION_REQUEST_INT1"));
+    EXPECT_THAT(asked(mission, 6.0), ElementsAre("MISSION_REQUEST_LIST"));
+    mission.receive(message_of(count_of(vehicle, 2)));
+    EXPECT_THAT(asked(mission, 6.1), ElementsAre("MISSION_REQUEST_INT0")) << "from the first on";
+    mission.receive(message_of(vehicle.packet(47, std::string("\xF5\xBF\x01", 3))));
+    EXPECT_THAT(asked(mission, 7.2), ElementsAre("MISSION_REQUEST_LIST")) << "it gave up";
+}
+
+TEST(LinkMission, DoesNotAskWhileAGroundStationReads) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat(2, 12)));
+    mission.receive(message_of(vehicle.packet(44, little_endian(std::uint16_t{2}) + std::string("\xFF\xBE", 2))));
+    EXPECT_THAT(asked(mission, 10.0), IsEmpty());
+    mission.receive(message_of(item(vehicle, 0, 47.0, 50.0F)));
+    EXPECT_THAT(asked(mission, 12.0), IsEmpty());
+    EXPECT_THAT(asked(mission, 14.9), IsEmpty());
+    EXPECT_THAT(asked(mission, 15.1), ElementsAre("MISSION_REQUEST_LIST")) << "the station has stopped";
+}
+
+TEST(LinkMission, StatesThatItReceivedAMissionWithoutItems) {
+    test::MavlinkSender vehicle;
+    LinkMission mission(245, 191);
+    mission.receive(message_of(vehicle.heartbeat(2, 12)));
+    EXPECT_THAT(asked(mission, 0.0), ElementsAre("MISSION_REQUEST_LIST"));
+    mission.receive(message_of(count_of(vehicle, 0)));
+    EXPECT_THAT(asked(mission, 0.1), ElementsAre("MISSION_ACK"));
+    EXPECT_THAT(asked(mission, 9.9), IsEmpty());
+    EXPECT_THAT(asked(mission, 10.1), ElementsAre("MISSION_REQUEST_LIST"));
 }
 
 // A mission of as many items is not mixed with the one before it.
@@ -178,6 +221,7 @@ TEST(LinkMission, IsReadAgainAfterAnUpload) {
     mission.receive(message_of(vehicle.heartbeat()));
     mission.receive(message_of(count_of(vehicle, 1)));
     ASSERT_TRUE(mission.receive(message_of(item(vehicle, 0, 47.0, 0.0F))));
+    ASSERT_THAT(asked(mission, 0.9), ElementsAre("MISSION_ACK"));
     ASSERT_THAT(asked(mission, 1.0), IsEmpty());
     const auto acknowledge = [&](char type) {
         mission.receive(message_of(vehicle.packet(47, std::string("\xF5\xBF") + type)));
