@@ -14,7 +14,9 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -339,17 +341,61 @@ void leave_out_partial_position(telemetry::MessageTable& position, const telemet
                                     begins ? "begins" : "ends"));
 }
 
-/// Leaves out the speeds of an aircraft that knows none, as without GPS: both messages then have 0 throughout, as of one
-/// on the ground.
-void leave_out_unknown_speeds(telemetry::MessageTable* position, telemetry::MessageTable* hud) {
+/// Leaves out the speeds of a message that are 0 throughout, as of an aircraft at rest: it knows none, as without GPS, or
+/// has them in the other message alone (Betaflight until 4.5).
+void leave_out_unknown_speeds(telemetry::MessageTable& table) {
     constexpr std::array speeds{"vx", "vy", "groundspeed"};
-    for (const auto* table : {position, hud})
-        for (const auto* speed : speeds)
-            if (table != nullptr && has_values(*table, speed, no_value)) return;
-    for (auto* table : {position, hud})
-        if (table != nullptr)
-            std::erase_if(table->columns,
-                          [&](const auto& column) { return std::ranges::find(speeds, column.field) != speeds.end(); });
+    for (const auto* speed : speeds)
+        if (has_values(table, speed, no_value)) return;
+    std::erase_if(table.columns,
+                  [&](const auto& column) { return std::ranges::find(speeds, column.field) != speeds.end(); });
+}
+
+/// Leaves out an energy that is more than its charge has at any voltage, as INAV counts it.
+void leave_out_impossible_energy(telemetry::MessageTable& battery, std::vector<std::string>& notes) {
+    constexpr double max_voltage_v = 1000.0;
+    constexpr double joule_per_unit = 100.0;
+    const auto* energy = battery.column("energy_consumed");
+    const auto* charge_mah = battery.column("current_consumed");
+    if (energy == nullptr || charge_mah == nullptr) return;
+    for (std::size_t row = battery.time_s.size(); row-- > 0;) {
+        const double charge_ah = charge_mah->values[row] * units::milli;
+        const double voltage_v = units::wh_from_joule(joule_per_unit * energy->values[row]) / charge_ah;
+        if (!(charge_ah > 0.0 && voltage_v > 0.0)) continue;
+        if (voltage_v < max_voltage_v) return;
+        notes.push_back(
+            fmt::format("the energy counted by BATTERY_STATUS is not used: with its charge it would be of "
+                        "{:.0f} V (INAV sends 1000 times the energy)",
+                        voltage_v));
+        std::erase_if(battery.columns, [](const auto& column) { return column.field == "energy_consumed"; });
+        return;
+    }
+}
+
+/// States the hover of ArduPilot's VTOLs by their modes where no message of its own does.
+void add_hover_of_modes(telemetry::AutopilotLog& log) {
+    static const std::set<double> hovers{17.0, 18.0, 19.0, 20.0, 22.0, 23.0};  // not QRTL, which begins on the wing
+    constexpr double ardupilot = 3.0;
+    constexpr double hover = 3.0;
+    constexpr double wing = 4.0;
+    auto& sender = log.log.senders.front();
+    const auto* heartbeat = sender.table("HEARTBEAT");
+    const auto* mode = heartbeat == nullptr ? nullptr : heartbeat->column("custom_mode");
+    const auto* base_mode = heartbeat == nullptr ? nullptr : heartbeat->column("base_mode");
+    if (mode == nullptr || base_mode == nullptr || sender.table("EXTENDED_SYS_STATE") != nullptr) return;
+    if (of_heartbeat(log, "autopilot") != ardupilot || ardupilot_name(of_heartbeat(log, "type")) != "ArduPlane") return;
+    telemetry::Column state{"vtol_state", std::nullopt, {}};
+    bool has_hover = false;
+    for (std::size_t row = 0; row < mode->values.size(); ++row) {
+        const bool is_hover = hovers.contains(mode->values[row]);
+        has_hover = has_hover || (is_hover && is_armed_mode({base_mode->values[row]}) != 0.0);
+        state.values.push_back(is_hover ? hover : wing);
+    }
+    if (!has_hover) return;
+    log.facts.notes.emplace_back(
+        "EXTENDED_SYS_STATE is not in the recording: the hover is by the modes QSTABILIZE to QACRO; in AUTO it counts as "
+        "on the wing");
+    sender.tables.push_back({"EXTENDED_SYS_STATE", heartbeat->time_s, {std::move(state)}, heartbeat->places});
 }
 
 /// A time in which the battery's own message is silent, and the status is not.
@@ -429,8 +475,12 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
     const auto position = find("GLOBAL_POSITION_INT");
     if (position != tables.end() && hud != tables.end())
         leave_out_partial_position(*position, *hud, heartbeat, log.facts.notes);
-    leave_out_unknown_speeds(position == tables.end() ? nullptr : &*position, hud == tables.end() ? nullptr : &*hud);
-    if (battery != tables.end()) leave_out_other_batteries(*battery, log.facts.notes);
+    if (position != tables.end()) leave_out_unknown_speeds(*position);
+    if (hud != tables.end()) leave_out_unknown_speeds(*hud);
+    if (battery != tables.end()) {
+        leave_out_other_batteries(*battery, log.facts.notes);
+        leave_out_impossible_energy(*battery, log.facts.notes);
+    }
     const bool has_battery = battery != tables.end() && has_values(*battery, "voltages[0]", unknown_16_bit) &&
                              has_values(*battery, "current_battery", unknown);
     if (has_battery && status != tables.end()) complete_cells(*battery, *status, log.facts.notes);
@@ -461,6 +511,7 @@ telemetry::AutopilotLog without_doubtful_messages(telemetry::AutopilotLog log) {
             has_battery && !is_rare && !silence && table.message == (has_ended ? "BATTERY_STATUS" : "SYS_STATUS");
         return table.empty() || is_unused || (has_second && table.message == "BATTERY2");
     });
+    add_hover_of_modes(log);
     return log;
 }
 
