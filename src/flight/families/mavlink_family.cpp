@@ -342,7 +342,7 @@ void leave_out_partial_position(telemetry::MessageTable& position, const telemet
 }
 
 /// Leaves out the speeds of a message that are 0 throughout, as of an aircraft at rest: it knows none, as without GPS, or
-/// has them in the other message alone (Betaflight until 4.5).
+/// has them in the other message alone (older Betaflight).
 void leave_out_unknown_speeds(telemetry::MessageTable& table) {
     constexpr std::array speeds{"vx", "vy", "groundspeed"};
     for (const auto* speed : speeds)

@@ -23,6 +23,7 @@ namespace flightwatt::telemetry {
 namespace {
 
 using Entry = TlogEntry;
+using SenderMessage = std::pair<std::pair<int, int>, std::uint32_t>;  ///< system and component, id of the message
 
 constexpr double us_per_s = 1e6;
 
@@ -52,6 +53,20 @@ bool has_boot_time(const MavlinkFrame& frame) {
     return name == "SYSTEM_TIME" || name == "GLOBAL_POSITION_INT" || name == "ATTITUDE";
 }
 
+/// Whether the times of a message since the boot run ahead of those of reception in most steps, as the microseconds that
+/// INAV and Betaflight state as milliseconds.
+bool is_ahead(const std::vector<BootTime>& times) {
+    constexpr double max_speed = 10.0;
+    constexpr double max_ahead_s = 5.0;
+    constexpr std::size_t enough_times = 10;
+    std::size_t ahead = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double step_s = std::abs(times[i].boot_s - times[i - 1].boot_s);  // it overflows, too
+        ahead += step_s > max_speed * std::abs(times[i].received_s - times[i - 1].received_s) + max_ahead_s ? 1 : 0;
+    }
+    return times.size() >= enough_times && 2 * ahead > times.size();
+}
+
 double boot_time_s(const MavlinkFrame& frame) { return frame.number("time_boot_ms") * units::milli; }
 
 /// The time of reception, from that of the first packet on.
@@ -71,6 +86,7 @@ struct Census {
     std::set<int> px4 = {};                                                  ///< systems
     std::map<std::pair<int, int>, std::vector<BootTime>> boot_times = {};    ///< by system and component
     std::map<std::pair<int, int>, std::vector<VehicleChange>> changes = {};  ///< likewise
+    std::set<SenderMessage> without_boot_time = {};
     std::uint64_t start_us = 0;
 
     void add(const Entry& entry, std::size_t offset) {
@@ -78,7 +94,7 @@ struct Census {
         if (start_us == 0) start_us = entry.time_us;
         if (frame.message == nullptr) return;
         if (has_boot_time(frame))
-            boot_times[{frame.system, frame.component}].push_back(
+            times_[{{frame.system, frame.component}, frame.id}].push_back(
                 {offset, received_s(entry, start_us), boot_time_s(frame)});
         const auto& name = frame.message->layout.name;
         if (name == "HEARTBEAT" && is_autopilot(frame)) {
@@ -90,6 +106,20 @@ struct Census {
         } else if (name == "SYS_STATUS" || name == "GLOBAL_POSITION_INT") {
             others.try_emplace(frame.system, Autopilot{frame.component});
         }
+    }
+
+    /// Collects the boot times of each sender, without messages that have another unit.
+    void sort_boot_times() {
+        for (const auto& [message, times] : times_) {
+            if (is_ahead(times)) {
+                without_boot_time.insert(message);
+                continue;
+            }
+            auto& all = boot_times[message.first];
+            all.insert(all.end(), times.begin(), times.end());
+            std::ranges::sort(all, {}, &BootTime::place);
+        }
+        times_.clear();
     }
 
   private:
@@ -107,7 +137,8 @@ struct Census {
     }
 
     /// By sender and message: the number, and its latest place.
-    std::map<std::pair<std::pair<int, int>, std::uint32_t>, std::pair<std::uint64_t, std::size_t>> stated_ = {};
+    std::map<SenderMessage, std::pair<std::uint64_t, std::size_t>> stated_ = {};
+    std::map<SenderMessage, std::vector<BootTime>> times_ = {};
 };
 
 /// Places of a recording, [begin, end).
@@ -126,6 +157,7 @@ class Vehicle {
           component_(component),
           places_(places),
           is_px4_(census.px4.contains(system)),
+          without_boot_time_(census.without_boot_time),
           start_us_(census.start_us),
           rows_(file, wanted) {
         if (const auto times = census.boot_times.find({system, component}); times != census.boot_times.end())
@@ -203,7 +235,8 @@ class Vehicle {
         if (name == "PARAM_VALUE") add_parameter(frame);
         if (name == "STATUSTEXT") add_text(frame);
         if (name == "AUTOPILOT_VERSION") add_version(frame);
-        if (has_boot_time(frame)) note_restart(boot_time_s(frame), time_s);
+        if (has_boot_time(frame) && !without_boot_time_.contains({{system_, frame.component}, frame.id}))
+            note_restart(boot_time_s(frame), time_s);
     }
 
     /// PX4 sends the bytes of a whole number in place of a float, others its value.
@@ -243,6 +276,7 @@ class Vehicle {
     int component_;
     Places places_;
     bool is_px4_;
+    std::set<SenderMessage> without_boot_time_;
     std::uint64_t start_us_;
     RowCollector rows_;
     MavlinkSequence sequence_;
@@ -275,12 +309,12 @@ std::vector<Vehicle> vehicles_of(const Census& census, const std::filesystem::pa
     return vehicles;
 }
 
-/// Whether the bytes begin with two packets behind eight bytes each, the first with a checksum that fits.
-bool begins_with_packets(std::string_view bytes) {
-    if (bytes.size() < tlog_time_bytes) return false;
-    const auto first = read_mavlink_frame(bytes.substr(tlog_time_bytes));
+/// Whether the bytes begin with two packets behind as many bytes each, the first with a checksum that fits.
+bool begins_with_packets(std::string_view bytes, std::size_t behind) {
+    if (bytes.size() < behind) return false;
+    const auto first = read_mavlink_frame(bytes.substr(behind));
     if (!first || first->message == nullptr) return false;
-    const auto second = 2 * tlog_time_bytes + first->bytes;
+    const auto second = 2 * behind + first->bytes;
     return bytes.size() > second && mavlink_frame_bytes(bytes.substr(second)) != 0;
 }
 
@@ -292,7 +326,7 @@ bool is_tlog(std::string_view bytes) {
         const auto entry = read_tlog_entry(bytes.substr(at));
         if (entry && (entry->frame.message != nullptr || at == 0)) return true;
     }
-    return begins_with_packets(bytes);  // without times, which read_tlog() refuses
+    return begins_with_packets(bytes, tlog_time_bytes) || begins_with_packets(bytes, 0);  // read_tlog() refuses them
 }
 
 std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesystem::path& file,
@@ -301,7 +335,12 @@ std::vector<AutopilotLog> read_tlog(std::string_view bytes, const std::filesyste
     for_each_entry(
         bytes, [&](const Entry& entry, std::size_t offset) { census.add(entry, offset); },
         [](std::size_t, std::size_t) {});
+    census.sort_boot_times();
     auto vehicles = vehicles_of(census, file, wanted);
+    if (begins_with_packets(bytes, 0)) {
+        throw InputError({file.string()}, "has MAVLink without times of reception",
+                         "read the .tlog instead: MAVProxy writes it next to its .tlog.raw");
+    }
     if (census.start_us == 0) {
         throw InputError({file.string()}, "has MAVLink, but no times between 2001 and 2100",
                          "the clock of the computer that recorded it was not set: read the autopilot's own log");

@@ -126,6 +126,18 @@ TEST(Tlog, StatesLostMessagesAndARestartOfTheAutopilot) {
 
 /// The clock of a laptop or a computer on board is set while it records: a flight was an hour longer, or in two parts,
 /// and a recording that begins years ago was refused.
+/// INAV and Betaflight state microseconds there: "the autopilot restarted" at each message.
+TEST(Tlog, TimesSinceTheBootInMicrosecondsShowNoRestart) {
+    test::MavlinkSender vehicle;
+    std::string log;
+    for (int i = 0; i < 40; ++i) {
+        log += test::tlog_entry(i, vehicle.heartbeat()) + test::tlog_entry(i, vehicle.position(1e3 * i, 0.0));
+        log += test::tlog_entry(
+            i, vehicle.packet(30, test::little_endian(static_cast<std::uint32_t>(1'000 * i)) + std::string(24, '\0')));
+    }
+    EXPECT_THAT(read(log).front().facts.notes, testing::IsEmpty());
+}
+
 TEST(Tlog, TimesContinueWhereTheClockOfTheStationIsSet) {
     for (const double step_s : {40.0, -40.0, 1e8}) {
         SCOPED_TRACE(step_s);
@@ -196,6 +208,14 @@ TEST(Tlog, RefusesALogWithoutAVehicle) {
     test::MavlinkSender station{255, 190};
     EXPECT_THAT(test::rejected([&] { read(test::tlog_entry(0, station.heartbeat(6, 8))); }),
                 HasSubstr("x.tlog: has MAVLink, but no messages of a vehicle"));
+}
+
+/// MAVProxy's .tlog.raw was no known log.
+TEST(Tlog, IsRefusedAsPacketsAlone) {
+    test::MavlinkSender vehicle;
+    const auto raw = vehicle.heartbeat() + vehicle.status(15'800, 0) + vehicle.heartbeat();
+    EXPECT_TRUE(is_tlog(raw));
+    EXPECT_THAT(test::rejected([&] { read(raw); }), HasSubstr("without times of reception"));
 }
 
 TEST(Tlog, IsNotFoundInOtherFiles) {
