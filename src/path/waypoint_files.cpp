@@ -248,11 +248,20 @@ PlanEntries parse_kml(std::string_view text, const std::string& file, const Auto
     const auto document = load_kml(text, file, hint);
     auto coordinates = document.select_nodes("//LineString/coordinates");
     const auto points = document.select_nodes("//Point/coordinates");
+    const bool has_tracks =
+        !document.select_nodes("//*[local-name()='Track'] | //LinearRing[not(ancestor::Polygon)]").empty();
+    if (coordinates.empty() && has_tracks)
+        throw InputError({file}, "has tracks or rings (gx:Track, LinearRing), and no path (LineString)",
+                         "save the way that is to be flown as a path");
     PlanEntries plan;
     if (coordinates.empty())
         coordinates = points;
     else if (!points.empty())
         plan.not_flown.emplace_back("its points are not flown to: it has a path");
+    if (has_tracks) {
+        plan.not_flown.emplace_back("its tracks and rings (gx:Track, LinearRing) are not flown: it has a path");
+        plan.missing.push_back(plan.not_flown.back());
+    }
     std::set<double> ignored_m;
     std::set<std::string> modes;
     for (const auto& node : coordinates) {

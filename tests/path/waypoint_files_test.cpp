@@ -125,6 +125,23 @@ TEST(WaypointFiles, AreThePathOfKmlElseItsPoints) {
 }
 
 /// Altitudes of KML were not flown: a climb of 900 m cost nothing.
+TEST(WaypointFiles, OfKmlAreNotThePointsBesideATrack) {
+    const auto kml = [](const std::string& inner) { return parse_kml("<kml>" + inner + "</kml>", "a.kml"); };
+    const std::string points =
+        "<Point><coordinates>8,47</coordinates></Point><Point><coordinates>8.1,47</coordinates></Point>";
+    const std::string line = "<LineString><coordinates>8,47 8.1,47</coordinates></LineString>";
+    for (const std::string track : {"<gx:Track><gx:coord>8 47 100</gx:coord><gx:coord>8.2 47 100</gx:coord></gx:Track>",
+                                    "<LinearRing><coordinates>8,47 8.1,47 8,47</coordinates></LinearRing>"}) {
+        EXPECT_EQ(
+            rejected([&] { kml(points + track); }),
+            "a.kml: has tracks or rings (gx:Track, LinearRing), and no path (LineString); save the way that is to "
+            "be flown as a path");
+        EXPECT_EQ(kml(line + track).missing,
+                  std::vector<std::string>{"its tracks and rings (gx:Track, LinearRing) are not flown: it has a path"});
+    }
+    EXPECT_TRUE(kml(line + "<Polygon><outerBoundaryIs><LinearRing/></outerBoundaryIs></Polygon>").missing.empty());
+}
+
 TEST(WaypointFiles, OfKmlHaveTheAltitudesOfItsMode) {
     const auto kml = [](const std::string& mode, const char* coordinates) {
         return parse_kml(fmt::format("<kml><LineString><altitudeMode>{}</altitudeMode><coordinates>{}</coordinates>"
