@@ -32,12 +32,15 @@ AreaOutlines kml_area(std::string_view text, const std::string& file) {
         std::ranges::any_of(polygons, [](const auto& polygon) { return !is_named_no_fly(polygon.node(), folder); });
     AreaOutlines found;
     for (const auto& polygon : polygons) {
+        bool has_altitude = false;
         const auto ring = [&](const char* boundary, std::vector<Outline>& outlines) {
             const auto path = fmt::format("{}/LinearRing", boundary);
             for (const auto& node : polygon.node().select_nodes(path.c_str())) {
                 auto& outline = outlines.emplace_back();
-                for (const auto& corner : kml_places(node.node().child("coordinates"), file))
+                for (const auto& corner : kml_places(node.node().child("coordinates"), file)) {
                     outline.push_back(corner.place);
+                    has_altitude = has_altitude || corner.altitude_m.value_or(0.0) != 0.0;
+                }
             }
         };
         if (is_named_no_fly(polygon.node(), "ancestor::Placemark[1]/name") ||
@@ -47,6 +50,8 @@ AreaOutlines kml_area(std::string_view text, const std::string& file) {
         }
         ring("outerBoundaryIs", found.areas);
         ring("innerBoundaryIs", found.closed);
+        const std::string_view mode = polygon.node().child_value("altitudeMode");
+        found.has_altitudes |= has_altitude && (mode == "absolute" || mode == "relativeToGround");
     }
     return found;
 }
@@ -219,6 +224,10 @@ SurveyPlan parse_area(std::string_view text, const std::string& file, const Surv
     survey.is_divided = is_divided(area, finest.spacing_m, layout.heading_deg, like.where);
     survey.has_zones = !area.closed.empty();
     note_overlaps(area.areas, survey);
+    if (outlines.has_altitudes)
+        survey.not_flown.emplace_back(
+            "the altitudes of its polygons are not flown: altitude_m in [path] states that of the lines, "
+            "ground_altitude_m that of home");
     const auto from =
         start ? std::optional(to_local(*start, outlines.areas.front().front())) : std::optional<LocalPosition>();
     if (survey.is_divided)

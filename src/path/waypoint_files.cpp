@@ -118,6 +118,8 @@ class GeoJsonReader {
         const auto properties = feature.find("properties");
         const bool has_properties = properties != feature.end() && properties->is_object();
         is_closed_ = is_area_ && has_properties && is_no_fly(*properties);
+        outlines.has_altitudes |=
+            is_area_ && has_properties && !is_closed_ && properties->value("altitude_m", Json()).is_number();
         read_geometry(member(feature, "geometry", "a geometry", &Json::is_object));
         if (is_area_ || !has_properties) return;
         for (const auto& of : entry_values) {
@@ -160,7 +162,10 @@ class GeoJsonReader {
             entries.clear();
             for (const auto& position : ring) read_position(position);
             auto& outline = (is_closed_ || is_hole ? outlines.closed : outlines.areas).emplace_back();
-            for (const auto& corner : entries) outline.push_back(*corner.geographic);
+            for (const auto& corner : entries) {
+                outline.push_back(*corner.geographic);
+                outlines.has_altitudes |= !is_closed_ && corner.altitude_m.value_or(0.0) != 0.0;
+            }
             is_hole = true;
         }
     }

@@ -31,6 +31,7 @@ using Outline = std::vector<GeodeticPosition>;
 struct AreaOutlines {
     std::vector<Outline> areas;
     std::vector<Outline> closed;  ///< holes, and zones that are not flown over
+    bool has_altitudes = false;   ///< other than 0, of areas
 };
 
 /// Reads the polygons of a GeoJSON file; those of a feature with the property "no_fly": true are closed. Throws

@@ -43,6 +43,35 @@ TEST(Areas, NameTheWidthThatNoLineCovers) {
         "130 of the area's 400 m of width are farther than half a spacing from a line: another spacing fits better");
 }
 
+TEST(Areas, NameAltitudesOfTheirPolygonsThatAreNotFlown) {
+    const std::vector<std::string> corners{"8,47", "8.00526,47", "8.00526,47.0036", "8,47"};
+    const auto notes = [&](const char* altitude, const std::string& properties, bool is_kml) {
+        std::string places;
+        for (const auto& corner : corners)
+            places += is_kml ? fmt::format("{}{} ", corner, altitude)
+                             : fmt::format("{}[{}{}]", places.empty() ? "" : ",", corner, altitude);
+        const auto text =
+            is_kml ? fmt::format(
+                         "<kml><Polygon>{}<outerBoundaryIs><LinearRing><coordinates>{}</coordinates></LinearRing>"
+                         "</outerBoundaryIs></Polygon></kml>",
+                         properties, places)
+                   : fmt::format(R"({{"type":"Feature","properties":{{{}}},"geometry":{{"type":"Polygon",)"
+                                 R"("coordinates":[[{}]]}}}})",
+                                 properties, places);
+        return parse_area(text, "a", {0.0, {{50.0}}}).not_flown;
+    };
+    const std::vector<std::string> noted{
+        "the altitudes of its polygons are not flown: altitude_m in [path] states that of the lines, ground_altitude_m "
+        "that of home"};
+    EXPECT_EQ(notes(",300", "", false), noted);
+    EXPECT_EQ(notes("", R"("altitude_m":300)", false), noted);
+    EXPECT_EQ(notes(",300", "<altitudeMode>relativeToGround</altitudeMode>", true), noted);
+    EXPECT_EQ(notes(",300", "<altitudeMode>absolute</altitudeMode>", true), noted);
+    EXPECT_TRUE(notes(",300", "", true).empty());  // clamped to the ground
+    EXPECT_TRUE(notes(",0", "", false).empty());
+    EXPECT_TRUE(notes("", "", false).empty());
+}
+
 TEST(Areas, AreCoveredByLines) {
     const auto area = parse_area(geojson(ring), "a.geojson", {0.0, {{50.0}}});
     EXPECT_NEAR(length_m(area), 8.0 * 400.0 + 7.0 * 78.54, 15.0);
