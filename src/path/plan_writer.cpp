@@ -53,18 +53,36 @@ class StopList {
         constexpr auto text =
             "arcs of a pattern that begin at corners are written as parts of circles, which are entered where the way is "
             "shortest: simulate the written missions";
-        constexpr double least_deg = 0.1;
-        const bool is_corner =
-            course_deg_ && std::abs(std::remainder(arc.start_course_deg - *course_deg_, 360.0)) > least_deg;
-        if (is_corner) note_once(text);
+        if (course_deg_ && is_bent(*course_deg_, arc.start_course_deg)) note_once(text);
+    }
+
+    double least_radius_m(const PathElement& element) const {
+        const double bank_m =
+            turn_radius_m(element.airspeed_m_per_s, plan_.turns.max_bank_deg, plan_.wind.speed_m_per_s);
+        return std::max(bank_m, plan_.turns.radius_m.value_or(0.0));
     }
 
     /// Whether another turn takes the place of a part of a circle between lines (fly_turns).
     bool is_narrow_turn(const PathElement& element, const Circles& circles) const {
-        const double bank_m =
-            turn_radius_m(element.airspeed_m_per_s, plan_.turns.max_bank_deg, plan_.wind.speed_m_per_s);
-        return element.is_turn && !plan_.is_rotorcraft &&
-               circles.radius_m < std::max(bank_m, plan_.turns.radius_m.value_or(0.0)) * (1.0 - 1e-9);
+        return element.is_turn && !plan_.is_rotorcraft && circles.radius_m < least_radius_m(element) * (1.0 - 1e-9);
+    }
+
+    /// Notes a way from a corner to a narrow turn that is too short to be flown straight: its end is written as a
+    /// corner, which is passed otherwise.
+    void note_short_way(std::size_t turn) {
+        if (turn < 2) return;
+        const auto* before = std::get_if<Leg>(&elements_[turn - 2].shape);
+        const auto* way = std::get_if<Leg>(&elements_[turn - 1].shape);
+        const bool is_short = way != nullptr && way->length_m < 2.0 * least_radius_m(elements_[turn]);
+        if (before != nullptr && is_short && is_bent(before->course_deg, way->course_deg))
+            note_once(
+                "narrow turns after short ways are written as corners, which are passed in another time: simulate the "
+                "written missions");
+    }
+
+    static bool is_bent(double from_deg, double to_deg) {
+        constexpr double least_deg = 0.1;
+        return std::abs(std::remainder(to_deg - from_deg, 360.0)) > least_deg;
     }
 
     void note_once(const std::string& text) {
@@ -78,7 +96,10 @@ class StopList {
         altitude_m_ += element.altitude_change_m;
         const double airspeed = element.airspeed_m_per_s;
         if (const auto* circles = std::get_if<Circles>(&element.shape)) {
-            if (is_narrow_turn(element, *circles)) return stops.push_back({at_, altitude_m_, airspeed});
+            if (is_narrow_turn(element, *circles)) {
+                note_short_way(i);
+                return stops.push_back({at_, altitude_m_, airspeed});
+            }
             if (element.is_turn) note_corner(*circles);
             course_deg_ = circles->start_course_deg + (circles->to_right ? 360.0 : -360.0) * circles->turns;
             return stops.push_back({centre(*circles, before), altitude_m_, airspeed, 0.0, *circles});

@@ -99,6 +99,28 @@ TEST(PlanWriter, LeavesTurnsThatAreTooNarrowToTheAutopilot) {
         EXPECT_NEAR(flown_m(read_again(plan, format)), flown_m(plan.path), 0.1) << plan_ending(format);
 }
 
+/// A pack that began with the rest of a line took 5 s more as written than as planned, without a note.
+TEST(PlanWriter, NotesNarrowTurnsAfterShortWays) {
+    const auto notes = [](double way_m) {
+        auto plan = flight();
+        PathElement element;
+        element.airspeed_m_per_s = 14.0;
+        plan.path.elements.clear();
+        for (const auto& shape : std::initializer_list<std::variant<Leg, Circles, Hold>>{
+                 Leg{800.0, 90.0}, Leg{way_m, 210.0}, Circles{15.0, 0.5, false, 210.0}, Leg{600.0, 30.0}}) {
+            element.shape = shape;
+            element.is_turn = std::holds_alternative<Circles>(shape);
+            plan.path.elements.push_back(element);
+        }
+        return write_plan(plan, PlanFormat::ardupilot).notes;
+    };
+    EXPECT_EQ(notes(35.0),
+              std::vector<std::string>{
+                  "narrow turns after short ways are written as corners, which are passed in another time: "
+                  "simulate the written missions"});
+    EXPECT_TRUE(notes(300.0).empty());
+}
+
 /// A change of height above one place was written as a hold of its time, which the autopilot waits in addition.
 TEST(PlanWriter, WritesNoHoldForAChangeOfHeight) {
     auto plan = flight();
