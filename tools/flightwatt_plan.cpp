@@ -234,10 +234,10 @@ int make_plan(const cli::StageCall& call, const PlanArguments& arguments, const 
     return cli::ok;
 }
 
-/// Failure of the battery beyond a limit; empty if charge is the limit.
+/// Failure of the battery beyond a limit; empty if charge or the path is the limit.
 std::string_view beyond(mission::LimitingFactor bound) {
-    constexpr std::array<std::string_view, 3> texts{"", "; beyond, the battery cannot deliver the power",
-                                                    "; beyond, the battery is cut off"};
+    constexpr std::array<std::string_view, 4> texts{"", "; beyond, the battery cannot deliver the power",
+                                                    "; beyond, the battery is cut off", ""};
     return texts.at(static_cast<std::size_t>(bound));
 }
 

@@ -267,7 +267,11 @@ FeasibilityLimit farthest_return(const MissionVariation& with_return_after_m, do
         throw NoResultError(
             "the path has no legs along which to return: holds, and ways to a place with duration_s, are not legs");
     LimitSearch search(with_return_after_m, probability, too_far_percent);
-    if (search.surplus(length_m).value_or(too_far_percent) >= 0.0) return search.limit(length_m, length_m);
+    if (search.surplus(length_m).value_or(too_far_percent) >= 0.0) {
+        auto all = search.limit(length_m, length_m);
+        all.limited_by = LimitingFactor::path;
+        return all;
+    }
     search.set_end(length_m);
     search.refine();
     const bool fits_beyond = search.fits(search.bad());

@@ -21,7 +21,7 @@ std::pair<int, double> merit(const MissionSummary& summary) {
 }  // namespace
 
 std::string to_string(LimitingFactor bound) {
-    constexpr std::array names{"charge", "power", "cut-off"};
+    constexpr std::array names{"charge", "power", "cut-off", "path"};
     return names.at(static_cast<std::size_t>(bound));
 }
 

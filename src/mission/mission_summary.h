@@ -78,11 +78,12 @@ struct MonteCarloResult {
 /// Cause of a limit.
 enum class LimitingFactor {
     charge,
-    power,   ///< beyond, the battery could not deliver the power at any charge
-    cut_off  ///< beyond, its voltage would fall below the cut-off
+    power,    ///< beyond, the battery could not deliver the power at any charge
+    cut_off,  ///< beyond, its voltage would fall below the cut-off
+    path      ///< none of them: all of the path fits
 };
 
-/// "charge", "power" or "cut-off".
+/// "charge", "power", "cut-off" or "path".
 std::string to_string(LimitingFactor bound);
 
 /// The greatest value with which a mission lands with its reserve.

@@ -123,11 +123,13 @@ TEST(PathLimits, FindTheFarthestPlaceToReturnFrom) {
     const double across_s = 0.8 * 36000.0 / 21.97 - 6000.0 / 8.0 - 6000.0 / 18.0;
     EXPECT_NEAR(most.value, 6000.0 + 12.0 * across_s / 2.0, 1e-3);
     EXPECT_NEAR(most.residual_percent, 0.0, 1e-5);
+    EXPECT_EQ(most.limited_by, LimitingFactor::charge);
     // From the end of a short path.
     const FlightPath near{{path_element(Leg{600.0, 0.0})}};
     const auto all = farthest_return(
         [&](double after_m) { return with_reserve(path_mission(out_and_back(near, after_m, {})), 20.0); }, 600.0);
     EXPECT_EQ(all.value, 600.0);
+    EXPECT_EQ(to_string(all.limited_by), "path");
     EXPECT_THROW(farthest_return(mission_of, 0.0), NoResultError);
     // The wind forbids the way back.
     const auto downwind = [&](double after_m) {
