@@ -149,7 +149,8 @@ void require_matching_lengths(const ExportInput& input, const Format& format) {
     auto hint = fmt::format("a {} becomes {}", name_of(input.kind),
                             names_of_formats([&](const Format& other) { return other.kinds.contains(input.kind); }));
     if (input.kind == ExportKind::mission && format.name == "csv")
-        hint = fmt::format("its state of charge over time is: flightwatt simulate {} -o FILE.csv", input.file);
+        hint = fmt::format("its state of charge over time is: flightwatt simulate {} -o FILE.csv",
+                           cli::shell_quoted(input.file));
     if (input.kind == ExportKind::batch)
         hint = "one of flightwatt batch becomes latex, and its model is model.toml in it";
     throw InputError({input.file}, fmt::format("is a {}, of which no {} is made", name_of(input.kind), format.name),

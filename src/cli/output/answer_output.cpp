@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "cli/output/pack_output.h"
 #include "cli/output/physical_output.h"
+#include "cli/stage.h"
 #include "cli/terminal.h"
 
 #include <cmath>
@@ -232,11 +233,14 @@ std::string failsafe_line(const AircraftAnswer& answer) {
 std::string failsafe_command(const AircraftAnswer& answer) {
     if (!answer.failsafe) return "";
     const auto& card = *answer.failsafe;
-    const std::string own = answer.name.starts_with("PX4") ? "px4" : "ardupilot";
+    const std::string own = answer.name.starts_with("PX4")    ? "px4"
+                            : answer.name.starts_with("INAV") ? "inav"
+                                                              : "ardupilot";
     std::vector<std::string> others{"ardupilot", "px4", "inav", "paparazzi"};
     std::erase(others, own);
     // Of the mission, which has the payload and the reserve that were asked for.
-    auto command = fmt::format("flightwatt export {}/answer-mission.toml --format failsafe-{}", answer.folder, own);
+    auto command = fmt::format("flightwatt export {} --format failsafe-{}",
+                               shell_quoted(answer.folder + "/answer-mission.toml"), own);
     if (card.home_distance_m) command += fmt::format(" --home-distance {:.0f}", *card.home_distance_m);
     if (answer.question.wind_m_per_s > 0.0) command += fmt::format(" --wind {:g}", answer.question.wind_m_per_s);
     if (const auto& home = answer.endurance.return_airspeed_m_per_s; home.value)

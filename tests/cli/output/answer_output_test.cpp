@@ -51,9 +51,15 @@ TEST(AnswerText, FailsafeIsWrittenForTheAutopilotOfTheLogsAndTheWayHome) {
     answer.name = "PX4";
     EXPECT_THAT(text_of(answer), HasSubstr("--format failsafe-px4 --home-distance 500 --airspeed 12.00 (or -ardupilot, "
                                            "-inav, -paparazzi)"));
+    answer.name = "INAV";
+    EXPECT_THAT(text_of(answer),
+                HasSubstr("--format failsafe-inav --home-distance 500 --airspeed 12.00 (or -ardupilot, "
+                          "-px4, -paparazzi)"));
+    answer.folder = "my flights/out";
+    EXPECT_THAT(text_of(answer), HasSubstr("flightwatt export 'my flights/out/answer-mission.toml' --format"));
     answer.failsafe->low.reset();
     answer.failsafe->low_missing = "12 m/s make no way home";
-    EXPECT_THAT(text_of(answer), HasSubstr("failsafe-px4 --home-distance 500")) << "or the file has another reason";
+    EXPECT_THAT(text_of(answer), HasSubstr("failsafe-inav --home-distance 500")) << "or the file has another reason";
 }
 
 TEST(AnswerText, AReasonWithoutASubjectIsThatOfTheLog) {
