@@ -226,7 +226,7 @@ std::size_t end_of_part(std::string_view text) {
 }
 
 std::vector<FlightSeries> parse_part(std::string_view text, const std::filesystem::path& file) {
-    auto recordings = read_series_table(read_front_matter(text, file.string()), text, file.string(), plain_source);
+    auto recordings = read_series_table(read_front_matter(text, file.string()), text, file.string());
     for (auto& series : recordings) {
         series.file = file.string();
         if (series.flight.empty()) series.flight = telemetry::flight_name(file);

@@ -164,6 +164,25 @@ TEST(SeriesFile, OfAnotherProgramWithoutPowerHasThatOfVoltageAndCurrent) {
         << "a log whose power was not to be computed";
 }
 
+TEST(SeriesFile, WithoutPowerHasVoltageTimesCurrent) {
+    const auto series =
+        parse_series_csv("time_s,voltage_v,current_a,altitude_m\n1,12,2,0\n2,,3,1\n3,10,,2\n4,10,5,3\n", "mine.csv");
+    EXPECT_THAT(power_track(series).time_s, ElementsAre(1, 4)) << "not where one of them is missing";
+    EXPECT_THAT(power_track(series).value, ElementsAre(24, 50));
+    EXPECT_EQ(power_track(series).source, "voltage_v * current_a");
+    EXPECT_TRUE(parse_series_csv(to_csv(series), series.file) == series);
+    EXPECT_TRUE(power_track(parse_series_csv("time_s,voltage_v,altitude_m\n1,12,0\n2,12,1\n", "x.csv")).empty());
+    const auto stated = parse_series_csv("time_s,power_w,voltage_v,current_a\n1,7,12,2\n2,8,12,2\n", "x.csv");
+    EXPECT_THAT(power_track(stated).value, ElementsAre(7, 8));
+}
+
+TEST(SeriesFile, RefusesAPowerOfNegativeCurrents) {
+    const auto refusal = test::rejected(
+        [] { parse_series_csv("time_s,voltage_v,current_a,altitude_m\n1,12,-2,0\n2,12,-3,1\n", "x.csv"); });
+    EXPECT_THAT(refusal, HasSubstr("the power is negative throughout"));
+    EXPECT_THAT(refusal, HasSubstr("turn the sign of current_a"));
+}
+
 TEST(SeriesFile, RefusesNumbersWithWhichAFlightLastsForDays) {
     const auto refused = [](int rows, double interval_s) {
         std::string text = "time_s,power_w,air_temperature_c\n";

@@ -304,12 +304,7 @@ class MappedRows {
 
     /// Many loggers count the current of a discharge as negative.
     void require_positive(const std::vector<double>& power_w, const std::string& source) const {
-        constexpr double min_ratio = 100.0;
-        double drawn = 0.0;
-        double returned = 0.0;
-        for (const double value : power_w)
-            if (std::isfinite(value)) (value < 0.0 ? returned : drawn) += std::abs(value);
-        if (returned <= min_ratio * drawn) return;
+        if (!is_negative_throughout(power_w)) return;
         throw InputError({file_}, "the power is negative throughout: a discharge has a negative current",
                          fmt::format("turn its sign with factor = -1 in the [[track]] of {}",
                                      source.find(" * ") == std::string::npos ? "power_w" : "power_w or current_a"));

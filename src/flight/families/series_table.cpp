@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "base/toml_reader.h"
 #include "base/units.h"
+#include "flight/families/log_family.h"
 #include "flight/flight_data.h"
 #include "flight/select.h"
 #include "flight/telemetry_series.h"
@@ -21,30 +22,11 @@
 namespace flightwatt::flight {
 namespace {
 
-/// Adds the power of a table of another program that has none: voltage times current, where both are known.
-void add_product(FlightSeries& series) {
-    auto& tracks = series.tracks;
-    const auto of = [&](const char* name) { return std::ranges::find(tracks, name, &Track::name); };
-    const auto volts = of("voltage_v");
-    const auto amps = of("current_a");
-    if (of("power_w") != tracks.end() || volts == tracks.end() || amps == tracks.end()) return;
-    Track power{.name = "power_w", .source = "voltage_v * current_a"};
-    std::size_t v = 0;
-    for (std::size_t i = 0; i < amps->time_s.size(); ++i) {
-        while (v < volts->time_s.size() && volts->time_s[v] < amps->time_s[i]) ++v;
-        if (v == volts->time_s.size() || volts->time_s[v] != amps->time_s[i]) continue;
-        power.time_s.push_back(amps->time_s[i]);
-        power.value.push_back(volts->value[v] * amps->value[i]);
-    }
-    if (!power.empty()) tracks.push_back(std::move(power));
-}
-
 /// Reads the table row by row.
 class TableReader {
   public:
-    TableReader(FrontMatter matter, std::string_view text, CsvDialect dialect, const std::string& file,
-                std::string_view plain_source)
-        : matter_(std::move(matter)), text_(text), dialect_(dialect), file_(file), plain_source_(plain_source) {}
+    TableReader(FrontMatter matter, std::string_view text, CsvDialect dialect, const std::string& file)
+        : matter_(std::move(matter)), text_(text), dialect_(dialect), file_(file) {}
 
     void read_row(const CsvRowView& row) {
         if (columns_.empty()) return bind(row);
@@ -74,8 +56,10 @@ class TableReader {
             std::size_t track = 0;
             std::erase_if(series.tracks, [&](const Track&) { return !is_bound_[track++]; });
         }
-        if (!matter_.present) std::ranges::for_each(recordings_, add_product);
-        if (!matter_.present) refuse_slow_clock();
+        if (!matter_.present) {
+            refuse_slow_clock();
+            std::ranges::for_each(recordings_, [&](FlightSeries& series) { add_power(series); });
+        }
         if (recordings_.size() == 1 && !chosen_.empty()) require_chosen(recordings_.front());
         return std::move(recordings_);
     }
@@ -90,6 +74,31 @@ class TableReader {
                 throw InputError({file_}, finding,
                                  "write seconds, or name the column otherwise and state its unit in a column map");
         }
+    }
+
+    /// Without power_w it is voltage_v times current_a, where a row has both.
+    void add_power(FlightSeries& series) const {
+        const auto track_of = [&](std::string_view name) {
+            const auto found = std::ranges::find(series.tracks, name, &Track::name);
+            return found == series.tracks.end() ? nullptr : &*found;
+        };
+        const auto* voltage = track_of("voltage_v");
+        const auto* current = track_of("current_a");
+        if (track_of("power_w") != nullptr || voltage == nullptr || current == nullptr) return;
+        Track power{.name = "power_w", .source = "voltage_v * current_a"};
+        for (std::size_t i = 0, j = 0; i < voltage->time_s.size(); ++i) {
+            while (j < current->time_s.size() && current->time_s[j] < voltage->time_s[i]) ++j;
+            if (j == current->time_s.size()) break;
+            if (current->time_s[j] != voltage->time_s[i]) continue;
+            power.time_s.push_back(voltage->time_s[i]);
+            power.value.push_back(voltage->value[i] * current->value[j]);
+        }
+        if (power.empty()) return;
+        if (is_negative_throughout(power.value))
+            throw InputError({file_}, "the power is negative throughout: a discharge has a negative current",
+                             "turn the sign of current_a");
+        series.tracks.push_back(std::move(power));
+        sort_tracks(series.tracks);
     }
 
     void require_chosen(const FlightSeries& series) const {
@@ -175,7 +184,7 @@ class TableReader {
             throw InputError({file_, line}, fmt::format("unknown column '{}'", column),
                              meant_or(column, known, fmt::format("a series has {}", fmt::join(known, ", "))));
         matter_.columns.push_back(column);
-        matter_.series.tracks.push_back({.name = column, .source = std::string(plain_source_)});
+        matter_.series.tracks.push_back({.name = column, .source = plain_source});
         is_bound_.push_back(true);
         return matter_.columns.size() - 1;
     }
@@ -185,7 +194,6 @@ class TableReader {
     std::string_view text_;
     CsvDialect dialect_;
     std::string file_;
-    std::string_view plain_source_;
     std::vector<FlightSeries> recordings_;  ///< those that ended
     std::vector<std::size_t> starts_;       ///< lines of all, once a time falls
     std::vector<std::string> columns_;
@@ -197,11 +205,10 @@ class TableReader {
 
 }  // namespace
 
-std::vector<FlightSeries> read_series_table(FrontMatter matter, std::string_view text, const std::string& file,
-                                            std::string_view plain_source) {
+std::vector<FlightSeries> read_series_table(FrontMatter matter, std::string_view text, const std::string& file) {
     CsvDialect dialect;  // of what FlightWatt writes
     if (!matter.present) dialect = with_decimals(find_csv_header(text, file, {"time_s"}).dialect, text, file);
-    TableReader reader(std::move(matter), text, dialect, file, plain_source);
+    TableReader reader(std::move(matter), text, dialect, file);
     for_each_csv_row(
         text, file, [&](const CsvRowView& row) { reader.read_row(row); }, dialect);
     return reader.take();
@@ -218,6 +225,15 @@ std::string slow_clock_finding(const std::string& column, const std::vector<doub
     if (interval_s <= max_interval_s && days <= max_days) return "";
     return fmt::format("the times of '{}' are {:.3g} s apart, for {:.3g} days: they are in a smaller unit", column,
                        interval_s, days);
+}
+
+bool is_negative_throughout(const std::vector<double>& power_w) {
+    constexpr double min_ratio = 100.0;
+    double drawn = 0.0;
+    double returned = 0.0;
+    for (const double value : power_w)
+        if (std::isfinite(value)) (value < 0.0 ? returned : drawn) += std::abs(value);
+    return returned > min_ratio * drawn;
 }
 
 }  // namespace flightwatt::flight
