@@ -94,6 +94,58 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
     return pack;
 }
 
+/// Whether most of the flights that alone indicate a capacity, of some evenly chosen ones, agree with this one; absent
+/// where none indicates one. Flights of several packs, or of one that ages, indicate together a capacity that none has.
+std::optional<bool> do_most_agree(std::span<const battery::DischargeRecord> records, double capacity_ah) {
+    constexpr std::size_t most_asked = 5;
+    if (records.size() < 2) return std::nullopt;
+    std::size_t indicating = 0;
+    std::size_t agreeing = 0;
+    for (const auto i : identified_records(records, most_asked)) {
+        try {
+            const auto alone = identify_battery(records.subspan(i, 1), {});
+            const auto& estimate = alone.battery.flight_estimate;
+            if (!estimate) continue;
+            const auto& [low_ah, high_ah] = estimate->capacity_interval_ah;
+            ++indicating;
+            if (low_ah <= capacity_ah && capacity_ah <= high_ah) ++agreeing;
+        } catch (const NoResultError&) {
+            continue;
+        } catch (const UsageError&) {
+            continue;
+        }
+    }
+    return indicating == 0 ? std::nullopt : std::optional(2 * agreeing >= indicating);
+}
+
+/// The pack by the flights alone, whose capacity is unknown where most of them do not agree with what they indicate
+/// together.
+FoundPack estimated_pack(std::span<const battery::DischargeRecord> records,
+                         const battery::IdentificationOptions& options) {
+    auto pack = identified_pack(identify_battery(records, options));
+    auto& capacity = pack.answer.capacity_ah;
+    if (!capacity.value || do_most_agree(records, *capacity.value).value_or(true)) return pack;
+    capacity = unknown(
+        fmt::format("together the flights indicate {:.3g} Ah, with which most of them alone disagree: they are of "
+                    "several packs, or of one that aged; give the capacity on the pack's label: --capacity AH",
+                    *capacity.value));
+    pack.answer.flights_capacity_ah.reset();
+    pack.battery.flight_estimate = nullptr;
+    if (pack.identified) pack.identified->battery.flight_estimate = nullptr;
+    return pack;
+}
+
+/// The pack with a stated capacity, with which most flights alone agree, though not all together.
+FoundPack stated_pack(battery::BatteryIdentification identified, const CapacityChoice& capacity) {
+    const auto together = std::exchange(identified.battery.flight_estimate, nullptr);
+    auto pack = identified_pack(std::move(identified), capacity.basis);
+    pack.warnings.push_back(fmt::format(
+        "the flights together indicate {:.3g} Ah, but most of them alone agree with {:.3g} Ah, which is used: they are "
+        "of several packs, or of one that aged; --since and --pack choose flights of one",
+        together->capacity_ah, *capacity.value_ah));
+    return pack;
+}
+
 }  // namespace
 
 CapacityChoice choose_capacity(const std::optional<double>& given_ah, const std::vector<FlightFacts>& facts) {
@@ -144,16 +196,19 @@ FoundPack find_pack(std::span<const battery::DischargeRecord> all, const std::st
     std::string contradiction;
     try {
         try {
+            if (!capacity.value_ah) return estimated_pack(records, options);
             auto identified = identify_battery(records, options);
-            if (!capacity.is_logged || !estimated_by_flights(identified.battery))
-                return identified_pack(std::move(identified), capacity.basis);
+            const bool is_contradicted = estimated_by_flights(identified.battery).has_value();
+            if (is_contradicted && do_most_agree(records, *capacity.value_ah).value_or(false))
+                return stated_pack(std::move(identified), capacity);
+            if (!capacity.is_logged || !is_contradicted) return identified_pack(std::move(identified), capacity.basis);
             contradiction = capacity_warning(identified.battery);
         } catch (const UsageError& error) {
             if (!capacity.is_logged) throw;
             contradiction = error.what();
         }
         options.capacity_ah.reset();
-        auto pack = identified_pack(identify_battery(records, options));
+        auto pack = estimated_pack(records, options);
         pack.warnings.push_back(
             fmt::format("the logs' capacity of {:.3g} Ah is not used: {}", *capacity.value_ah, contradiction));
         return pack;

@@ -1,6 +1,7 @@
 #include "answer/pack_answer.h"
 
 #include "base/error.h"
+#include "helpers/aged_flights.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +62,33 @@ TEST(FindPack, KeepsTheMonitorsOfPacksOfConstantVoltage) {
     auto flown = logged({});
     flown.monitors = {{1, 0.5}, {2, 0.5}};
     EXPECT_EQ(find_pack({}, "no current", {5.0, "as given"}, {flown, flown}).battery.monitors, flown.monitors);
+}
+
+/// A pack of 2.4 Ah, less 8 % at the end, whose resistance rises by 30 %.
+std::vector<battery::DischargeRecord> ageing_pack() {
+    return test::aged_flights({.ohm_a_day = 0.0002, .part_a_day = 0.0007, .flights = 8}, 3).records;
+}
+
+TEST(FindPack, KeepsTheLogsCapacityOfAPackThatAges) {
+    const auto pack = find_pack(ageing_pack(), "", {2.4, "by the logs", true}, {logged(2.4)});
+    EXPECT_EQ(pack.answer.capacity_ah.value, 2.4);
+    EXPECT_EQ(pack.battery.capacity_ah, 2.4);
+    EXPECT_FALSE(estimated_by_flights(pack.battery)) << "or missions warn of it again";
+}
+
+TEST(FindPack, OfAPackThatAgesHasNoCapacityThatNoneOfItsFlightsHas) {
+    const auto pack = find_pack(ageing_pack(), "", {}, {logged({})});
+    if (pack.answer.capacity_ah.value)
+        EXPECT_NEAR(*pack.answer.capacity_ah.value, 2.3, 0.8);
+    else
+        EXPECT_THAT(pack.answer.capacity_ah.unknown, HasSubstr("--capacity AH"));
+}
+
+TEST(FindPack, LeavesALogsCapacityWithWhichNoFlightAgrees) {
+    const auto pack = find_pack(ageing_pack(), "", {20.0, "by the logs", true}, {logged(20.0)});
+    EXPECT_LT(pack.answer.capacity_ah.value.value_or(0.0), 10.0);
+    ASSERT_FALSE(pack.warnings.empty());
+    EXPECT_THAT(pack.warnings.back(), HasSubstr("the logs' capacity of 20 Ah is not used"));
 }
 
 TEST(FindPack, SaysWhatIsMissing) {
