@@ -94,30 +94,6 @@ FoundPack identified_pack(battery::BatteryIdentification identified, const std::
     return pack;
 }
 
-/// Whether most of the flights that alone indicate a capacity, of some evenly chosen ones, agree with this one; absent
-/// where none indicates one. Flights of several packs, or of one that ages, indicate together a capacity that none has.
-std::optional<bool> do_most_agree(std::span<const battery::DischargeRecord> records, double capacity_ah) {
-    constexpr std::size_t most_asked = 5;
-    if (records.size() < 2) return std::nullopt;
-    std::size_t indicating = 0;
-    std::size_t agreeing = 0;
-    for (const auto i : identified_records(records, most_asked)) {
-        try {
-            const auto alone = identify_battery(records.subspan(i, 1), {});
-            const auto& estimate = alone.battery.flight_estimate;
-            if (!estimate) continue;
-            const auto& [low_ah, high_ah] = estimate->capacity_interval_ah;
-            ++indicating;
-            if (low_ah <= capacity_ah && capacity_ah <= high_ah) ++agreeing;
-        } catch (const NoResultError&) {
-            continue;
-        } catch (const UsageError&) {
-            continue;
-        }
-    }
-    return indicating == 0 ? std::nullopt : std::optional(2 * agreeing >= indicating);
-}
-
 /// The pack by the flights alone, whose capacity is unknown where most of them do not agree with what they indicate
 /// together.
 FoundPack estimated_pack(std::span<const battery::DischargeRecord> records,
@@ -182,6 +158,28 @@ std::vector<std::size_t> identified_records(std::span<const battery::DischargeRe
                      static_cast<std::size_t>(std::ranges::max_element(records, {}, drawn_ah) - records.begin())});
     }
     return {kept.begin(), kept.end()};
+}
+
+std::optional<bool> do_most_agree(std::span<const battery::DischargeRecord> records, double capacity_ah) {
+    constexpr std::size_t most_asked = 5;
+    if (records.size() < 2) return std::nullopt;
+    std::size_t indicating = 0;
+    std::size_t agreeing = 0;
+    for (const auto i : identified_records(records, most_asked)) {
+        try {
+            const auto alone = identify_battery(records.subspan(i, 1), {});
+            const auto& estimate = alone.battery.flight_estimate;
+            if (!estimate) continue;
+            const auto& [low_ah, high_ah] = estimate->capacity_interval_ah;
+            ++indicating;
+            if (low_ah <= capacity_ah && capacity_ah <= high_ah) ++agreeing;
+        } catch (const NoResultError&) {
+            continue;
+        } catch (const UsageError&) {
+            continue;
+        }
+    }
+    return indicating == 0 ? std::nullopt : std::optional(2 * agreeing >= indicating);
 }
 
 FoundPack find_pack(std::span<const battery::DischargeRecord> all, const std::string& no_records_reason,

@@ -62,6 +62,10 @@ inline constexpr std::size_t max_identified_uses = 60;
 std::vector<std::size_t> identified_records(std::span<const battery::DischargeRecord> records,
                                             std::size_t most = max_identified_uses);
 
+/// Returns whether most of the flights that alone indicate a capacity, of some evenly chosen ones, agree with this one;
+/// absent where none indicates one. Flights of several packs, or of one that aged, together indicate what none has.
+std::optional<bool> do_most_agree(std::span<const battery::DischargeRecord> records, double capacity_ah);
+
 /// Returns the pack that the discharges of flights determine. A logged capacity that contradicts them is not used, with
 /// a warning, unless most flights alone agree with it; without one it is unknown where most flights alone disagree with
 /// what they indicate together. Where they determine no circuit, it has the flights' mean voltage until it is empty. Throws NoResultError

@@ -175,8 +175,8 @@ class Identifier {
                              numbers.size(), pack.uses.size()));
         battery::IdentificationOptions options{pack.label_ah ? pack.label_ah : options_.capacity_ah, {}, "", true};
         std::optional<battery::BatteryIdentification> found;
+        const bool is_known = options_.known != nullptr && is_of(*options_.known, records, options.capacity_ah);
         try {
-            const bool is_known = options_.known != nullptr && is_of(*options_.known, records, options.capacity_ah);
             found = is_known ? *options_.known : identify_battery(records, options);
         } catch (const NoResultError& error) {
             note(pack, fmt::format("no resistances and no capacities: {}", error.what()));
@@ -189,12 +189,24 @@ class Identifier {
             options.capacity_ah.reset();
             found = identify_battery(records, options);
         }
+        if (!is_known) leave_out_mixed_capacity(pack, records, *found);
         for (std::size_t k = 0; k < numbers.size(); ++k) {
             ledger_.uses[numbers[k]].found = found->flights.at(k);
             ledger_.uses[numbers[k]].mean_capacity_ah = found->capacity.value_ah;
         }
         note_capacities(pack, *found);
         return found;
+    }
+
+    /// Of flights that together indicate what most of them alone do not.
+    void leave_out_mixed_capacity(const Pack& pack, const std::vector<battery::DischargeRecord>& records,
+                                  battery::BatteryIdentification& found) {
+        const auto estimate = found.battery.flight_estimate;
+        if (!estimate || do_most_agree(records, estimate->capacity_ah).value_or(true)) return;
+        note(pack, fmt::format("its capacity is unknown: together its flights indicate {:.3g} Ah, with which most of "
+                               "them alone disagree, as where a pack aged",
+                               estimate->capacity_ah));
+        found.battery.flight_estimate = nullptr;
     }
 
     void note_capacities(const Pack& pack, const battery::BatteryIdentification& found) {
