@@ -150,7 +150,7 @@ TEST(SeriesFile, IsReadWithoutFrontMatterAndWithEmptyCells) {
     EXPECT_TRUE(warnings_of(series).empty());
 }
 
-/// Its power was unknown, though what is said of other tables names these columns.
+/// Its power was unknown, though the message about other tables names these columns.
 TEST(SeriesFile, OfAnotherProgramWithoutPowerHasThatOfVoltageAndCurrent) {
     const auto table = "time_s,voltage_v,current_a,altitude_m\n1,12,2,0\n2,,3,5\n3,11,4,10\n";
     const auto series = parse_series_csv(table, "mine.csv");

@@ -80,7 +80,7 @@ TEST(BatchContent, OnlyTheHoverOfAVtolIsNotFitted) {
     }
 }
 
-/// The page said of a hover that the fit took that other flights of its aircraft are on the wing.
+/// The page had it of a hover in the fit that other flights of its aircraft are on the wing.
 TEST(BatchContent, TheHoverOfAnotherVtolIsFitted) {
     const auto folder = test::scratch_dir();
     write_file_atomically(folder / "wing.csv", vtol_log("wing", "w"));

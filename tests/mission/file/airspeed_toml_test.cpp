@@ -1,4 +1,4 @@
-// airspeed_m_per_s of a mission, and which of its model's powers is said.
+// airspeed_m_per_s of a mission, and which power of its model is stated.
 
 #include "mission/file/airspeed_toml.h"
 
