@@ -68,8 +68,9 @@ std::optional<bool> do_most_agree(std::span<const battery::DischargeRecord> reco
 
 /// Returns the pack that the discharges of flights determine. A logged capacity that contradicts them is not used, with
 /// a warning, unless most flights alone agree with it; without one it is unknown where most flights alone disagree with
-/// what they indicate together. Where they determine no circuit, it has the flights' mean voltage until it is empty. Throws NoResultError
-/// where that needs a capacity or a voltage that is unknown, and UsageError for a given capacity below what was drawn.
+/// what they indicate together. Where they determine no circuit, it has the flights' mean voltage until it is empty.
+/// Throws NoResultError where that needs a capacity or a voltage that is unknown, and UsageError for a given capacity
+/// below what was drawn.
 FoundPack find_pack(std::span<const battery::DischargeRecord> records, const std::string& no_records_reason,
                     CapacityChoice capacity, const std::vector<FlightFacts>& facts);
 
