@@ -24,11 +24,7 @@ namespace {
 constexpr double too_far_percent = -100.0;
 
 /// The end of a mission, without its curve.
-MissionSummary simulated_end(const Mission& mission) {
-    SimulationOptions steps;
-    steps.output_s = std::max(1.0, timeline_of(mission.setup.duration_s).duration_s);
-    return simulate(mission, steps).summary;
-}
+MissionSummary simulated_end(const Mission& mission) { return simulate(mission, {.with_curve = false}).summary; }
 
 /// Simulated final state of charge minus the reserve [points]. Negative if the reserve is not kept, the more so the
 /// earlier the battery ends.

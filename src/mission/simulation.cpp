@@ -100,7 +100,7 @@ battery::Discharge run_segment(const Supply& supply, const LoadSegment& segment,
     SegmentPower power(segment);
     const auto load = [&](double time_s) { return power.at(time_s) + segment.compute_w; };
     const auto add = [&](double time_s, const battery::Discharge& now) {
-        add_row(curve, battery, segment, power.at(time_s), time_s, now);
+        if (steps.with_curve) add_row(curve, battery, segment, power.at(time_s), time_s, now);
     };
     const auto times = output_times(segment, steps.output_s);
     if (segment.soc_drop_percent > 0.0 && !state.ended_at_s()) {
@@ -208,9 +208,7 @@ std::optional<EstimatedLanding> landing_by_flights(const MissionSetup& mission, 
     if (!estimated) return std::nullopt;
     auto setup = mission;
     setup.battery = std::move(*estimated);
-    SimulationOptions steps;
-    steps.output_s = timeline_of(mission.duration_s).duration_s;
-    const auto summary = simulate(setup, schedule, steps, disturbances).summary;
+    const auto summary = simulate(setup, schedule, {.with_curve = false}, disturbances).summary;
     EstimatedLanding landing{setup.battery.capacity_ah, summary.final_soc_percent, std::nullopt, summary.keeps_reserve};
     if (!summary.feasible) landing.fails_at_s = powered_end_s(summary);
     return landing;

@@ -38,6 +38,7 @@ struct Simulation {
 struct SimulationOptions {
     double output_s = 1.0;       ///< the curve has a row at every multiple, and at every jump
     double integration_s = 1.0;  ///< the Runge-Kutta step, at most; shorter where power or the RC pair change fast
+    bool with_curve = true;      ///< false: no rows
 };
 
 /// Runs a mission with a schedule: mechanical and computing power, added, deplete the battery (Eqs. 8-10). Energies are

@@ -108,6 +108,9 @@ TEST(Simulation, DoesNotDependOnTheSteps) {
         EXPECT_NEAR(*summary.final_soc_percent, *reference.final_soc_percent, 1e-6) << steps.output_s;
         EXPECT_EQ(summary.energy_wh, reference.energy_wh);
     }
+    const auto without_curve = simulate(mission, {.with_curve = false});
+    EXPECT_TRUE(without_curve.curve.rows.empty());
+    EXPECT_EQ(without_curve.summary.final_soc_percent, simulate(mission).summary.final_soc_percent);
     mission = paper_mission("invariant-32fps-448bit");
     const double empty_s = *simulate(mission, {1.0, 0.01}).summary.depleted_at_s;
     for (const auto& steps : {SimulationOptions{}, {7.77}, {1e6}, {1.0, 0.1}}) {

@@ -77,10 +77,9 @@ std::optional<QosMap> qos_map(const mission::MissionSetup& mission) {
     const auto axes = axes_of(mission.compute);
     if (axes.size() < 2) return std::nullopt;
     QosMap map{axes[0], axes[1], {}};
-    mission::SimulationOptions steps;
-    for (const auto phase : flight::all_phases) steps.output_s = std::max(steps.output_s, mission.duration_s[phase]);
     for (const auto& schedule : schedules_of(mission, map.x, map.y))
-        map.soc_percent.push_back(simulate(mission, schedule, steps).summary.final_soc_percent.value_or(std::nan("")));
+        map.soc_percent.push_back(
+            simulate(mission, schedule, {.with_curve = false}).summary.final_soc_percent.value_or(std::nan("")));
     return map;
 }
 
