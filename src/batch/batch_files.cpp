@@ -59,7 +59,7 @@ IntactFlight read_intact(const std::filesystem::path& out, const std::string& fl
     std::error_code none;
     const bool are_there =
         std::filesystem::is_regular_file(series, none) && std::filesystem::is_regular_file(phases, none);
-    if (are_there) intact.series_csv = read_file(series);
+    if (are_there) intact.series_csv = read_file(series, flight::max_series_bytes);
     if (!are_there || intact.record.results != results_fingerprint(intact.series_csv, read_file(phases)))
         throw InputError({series.string()}, "the series or its phases have changed since the batch", hint);
     return intact;

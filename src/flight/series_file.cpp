@@ -291,6 +291,8 @@ FlightSeries parse_series_csv(std::string_view text, const std::filesystem::path
     return std::move(recordings.front());
 }
 
-FlightSeries read_series_csv(const std::filesystem::path& path) { return parse_series_csv(read_file(path), path); }
+FlightSeries read_series_csv(const std::filesystem::path& path) {
+    return parse_series_csv(read_file(path, max_series_bytes), path);
+}
 
 }  // namespace flightwatt::flight

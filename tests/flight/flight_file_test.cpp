@@ -149,6 +149,15 @@ std::string rows_of(double begin_s, double shift_s) {
     return rows;
 }
 
+/// An answer of a log of 200 MB ended at its own series.
+TEST_F(Recordings, OfABatchMayBeLongerThanFilesOfStrangers) {
+    const auto path = put("long.csv", "time_s,power_w\n");
+    std::filesystem::resize_file(path, max_file_bytes + 1);
+    const auto refusal = test::rejected([&] { read_series_csv(path); });
+    EXPECT_THAT(refusal, Not(HasSubstr("holds more than")));
+    EXPECT_THAT(refusal, HasSubstr("long.csv:2"));
+}
+
 TEST_F(Recordings, OfASeriesAreReadWithAndWithoutTheirHeaders) {
     const std::string header = "time_s,power_w,altitude_m\n";
     const auto alone = read_series_csv(put("alone.csv", header + rows_of(60, 10)));
