@@ -224,12 +224,13 @@ FlightFile::FlightFile(const std::filesystem::path& path, std::size_t max_bytes,
     is_series_ = !tables && is_csv && std::filesystem::is_regular_file(path, error);
     if (tables) {
         path_ = *tables;
-        text_ = telemetry::join_ulog_tables(path_, family_messages(px4_family()), max_bytes);
+        text_ =
+            telemetry::join_ulog_tables(path_, family_messages(px4_family()), std::max(max_bytes, max_series_bytes));
         autopilot_ = telemetry::detect_autopilot_format(text_);
         return;
     }
     if (is_series_) {
-        text_ = read_file(path, max_bytes, "if it is a series, --max-log-mb raises the limit");
+        text_ = read_file(path, std::max(max_bytes, max_series_bytes), "--max-log-mb raises the limit");
         require_kind(text_, FileKind::log, path.string());
         column_map_ = column_map_of(text_, path, columns);
         return;

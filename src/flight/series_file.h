@@ -22,8 +22,8 @@ std::string to_csv(const FlightSeries& series);
 /// Writes a series file as to_csv(), in chunks.
 void write_csv(const FlightSeries& series, const TextSink& sink);
 
-/// The longest series that a batch reads of its own: that of a log of 200 MB has 145 MB.
-inline constexpr std::size_t max_series_bytes = 4'000'000'000;
+/// The longest table that is read: the series of a log of 200 MB has 145 MB.
+inline constexpr std::size_t max_series_bytes = 1'000'000'000;
 
 /// Reads a series file, or a CSV without front matter (time_s and columns of track_names()). Throws InputError for a
 /// newer format, an unknown column, a value that is not a finite number, neither power_w nor altitude_m, fewer than two

@@ -6,8 +6,8 @@
 
 namespace flightwatt::telemetry {
 
-/// Default limit on the unpacked size of a compressed log and on a series file: about ten hours of flight. Reading
-/// takes up to nine times as much memory.
+/// Default limit on the unpacked size of a compressed log: about ten hours of flight. Reading takes up to nine times as
+/// much memory.
 inline constexpr std::size_t default_max_log_bytes = 100'000'000;
 
 /// Returns the content of a log, decompressed (.gz, .bz2, .xz, .zst, recognised by content). Throws InputError for a
