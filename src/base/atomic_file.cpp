@@ -180,7 +180,8 @@ void link_or_copy_file(const std::filesystem::path& source, const std::filesyste
                        const std::filesystem::path& temporary_folder) {
     const auto link = unfinished_name(temporary_folder);
     if (::link(source.c_str(), link.c_str()) != 0)
-        return write_file_atomically(path, read_file(source, std::numeric_limits<std::size_t>::max()), temporary_folder);
+        return write_file_atomically(path, read_file(source, std::numeric_limits<std::size_t>::max()),
+                                     temporary_folder);
     check_overwrite(path);
     const bool is_done = ::rename(link.c_str(), path.c_str()) == 0;
     const int error = errno;
